@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from rockbatch.analyses.design.answer import governs, plain
+from rockbatch.analyses.design.search import WORSE
 from rockbatch.analyses.design.tables import is_known
 from rockbatch.common.analyses import Entry
 from rockbatch.reporting.table import WHOLE, Head
@@ -20,12 +21,17 @@ def heads(info: Entry) -> list[Head]:
         Head("from", group=path, value=lambda row: plain(row["low"])),
         Head("to", group=path, value=lambda row: plain(row["high"])),
         Head("runs at", ".0f", note="number of values that were run in the interval", value="values"),
-        *(Head(f"governs {end}", value=_end(end)) for end in ("below", "above")),
+        *(Head(f"governs {outer}", value=_end(inner, outer)) for inner, outer in (("low", "below"), ("high", "above"))),
     ]
 
 
-def _end(end: str) -> Callable[[Entry], str]:
+def _end(inner: str, outer: str) -> Callable[[Entry], str]:
+    """Return the function that gives what governs an end of an interval, after the value where it does: the worse of the two."""
+
     def words(row: Entry) -> str:
-        return f"{plain(row[end])}: {governs(row, end, short=True)}" if is_known(row[end]) else "end of the scan"
+        if not is_known(row[outer]):
+            return "end of the scan"
+        place = max(outer, inner, key=lambda end: WORSE.index(row["verdict" if end == inner else f"{outer}_verdict"]))
+        return f"{plain(row[place])}: {governs(row, outer, short=True)}"
 
     return words

@@ -1,6 +1,7 @@
 """A design: the values found are those of the checks' known functions, and of separate runs and studies."""
 
 import json
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -649,7 +650,11 @@ def test_the_command_counts_its_runs_beforehand_and_prints_the_answer(tmp_path, 
     info = json.loads((tmp_path / "out/design.json").read_text(encoding="utf-8"))
     assert info["runs"] == info["tried"] == 4 + 6
     assert "✓ The greatest pier.p found that passes every check is " in printed
-    assert "end of the scan" in printed
+    ends = [
+        re.findall(r"[\d.]+: rotation at [\d.]+ %", line) for line in printed.splitlines() if "end of the scan" in line
+    ]
+    assert len(ends[0]) == 1
+    assert ends[0] == ends[1]  # of the value that fails, whether it lies within the interval or beyond it
     page = (tmp_path / "out/analyses.html").read_text(encoding="utf-8")
     assert "✓ The greatest pier.p found that passes every check is " in page
     assert "demand over limit" in page
