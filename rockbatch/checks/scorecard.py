@@ -106,16 +106,18 @@ def scorecard(
     case_of: Callable[[Verdict | CaseRuns], str],
     runs: Sequence[CaseRuns] = (),
     worst: Sequence[Worst] = (),
+    beside: Sequence[Verdict] = (),
 ) -> Scorecard:
     """Return the scorecard of verdicts on cases, and of cases with ``runs`` but without any.
 
     ``case_of`` names a case, and ``worst`` are the worst responses of all cases at each scale, checked or not. Of cases with one
-    name, as those under the bounds of a design may have, each cell has the worst verdict.
+    name, as those under the bounds of a design may have, each cell has the worst verdict. Units suit the limits of verdicts
+    ``beside`` these, too.
     """
     of_cases = [verdict for verdict in verdicts if verdict.case]
     by_check = grouped(of_cases, lambda verdict: verdict.check)
     checks = sorted(by_check, key=lambda name: max(map(badness, by_check[name])), reverse=True)
-    columns = [_column(by_check[name]) for name in checks]
+    columns = [_column([*by_check[name], *(verdict for verdict in beside if verdict.check == name)]) for name in checks]
     fallen = {case_of(case) for case in runs if case.none_stands}
     rows: list[tuple[tuple[int, float], Row]] = []
     by_case = grouped(of_cases, case_of)
@@ -168,7 +170,8 @@ def _column(verdicts: Sequence[Verdict]) -> Column:
     first, heights = verdicts[0], {verdict.at_m for verdict in verdicts if not math.isnan(verdict.at_m)}
     if first.is_ban:
         return Column(first.check, "none", 1.0)
-    unit, factor = SMALL[first.unit] if first.unit in SMALL and abs(first.limit) < 1.0 else (first.unit, 1.0)
+    small = first.unit in SMALL and any(abs(verdict.limit) < 1.0 for verdict in verdicts if verdict.unit == first.unit)
+    unit, factor = SMALL[first.unit] if small else (first.unit, 1.0)
     sign = "≤" if first.sense == "at most" else "≥"
     limit = f"{sign}\u00a0{wording.number(first.limit * factor, least=3)}\u00a0{unit}".rstrip("\u00a0")
     return Column(first.check, limit, factor, wording.at(heights.pop()).strip() if len(heights) == 1 else "")

@@ -205,15 +205,16 @@ def _is_same(cells: Sequence[tuple[Cell, str] | None]) -> bool:
 
 
 def _designs(pair: Pair, place: int) -> dict[tuple[object, ...], Side]:
-    """Return the designs of a study by case, varied values that both studies have, and scale."""
+    """Return the designs of a study by case, varied values that both studies have, and scale; units suit both studies' limits."""
     study, of_label = pair.studies[place], named_designs(pair.studies[place])
     by_label = grouped((verdict for verdict in study.verdicts if verdict.case), of_label)
+    beside = [*{verdict.check: verdict for verdict in pair.studies[1 - place].verdicts}.values()]
     found: dict[tuple[object, ...], Side] = {}
     for label, verdicts in by_label.items():
         key = _key(pair, place, verdicts[0])
         if key in found:  # only one study varies the value that tells them apart: they have no counterpart
             key = (*key, SIDES[place], label)
-        card = scorecard(verdicts, of_label)
+        card = scorecard(verdicts, of_label, beside=beside)
         pairs = zip(card.columns, card.rows[0].cells, strict=True)
         cells = [
             (column, cell, "" if cell.verdict.is_ban else column.limit) for column, cell in pairs if cell is not None

@@ -278,6 +278,19 @@ def test_margins_stand_side_by_side_check_by_check(tmp_path):
     assert row[-1] == "+35 %"
 
 
+def test_demands_of_one_check_stand_in_one_unit_whatever_the_limits(tmp_path):
+    """Beside 300 mm a limit of 1.2 m is in mm, too."""
+    wide = UPLIFT | {"at_most": 1.2, "confirm": ["at_most"]}
+    folders = two(tmp_path, tables(check=[UPLIFT]), tables(check=[wide]))
+    row = [
+        cell.replace("\u00a0", " ")
+        for cell in Page(rb.report(*folders).path.read_text(encoding="utf-8")).tables["answer"][2]
+    ]
+    assert row[1] == "uplift ≤ 300 mm, in B ≤ 1,200 mm"
+    assert row[2] == row[5]
+    assert float(row[2]) > 100.0
+
+
 @pytest.mark.parametrize(("other", "words"), [
     ({"statistic": "mean"}, "in B mean of theta_max_over_alpha at most 0.5 over stations"),
     ({"count": "component"}, "in B maximum of theta_max_over_alpha at most 0.5 over components"),
