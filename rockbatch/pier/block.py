@@ -132,9 +132,9 @@ class Pier(InNotebook):
         cls,
         width_m: float,
         height_m: float,
-        gravity: float = GRAVITY,
-        *,
         mass_t: float | None = None,
+        *,
+        gravity: float = GRAVITY,
         top_m: float | None = None,
         confirm: Collection[str] = (),
     ) -> "Pier":
