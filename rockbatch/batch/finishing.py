@@ -116,7 +116,7 @@ def _keep_histories(batch: Batch, saved: Results, records: Collection[str]) -> t
             f"exceed [output] histories_MB = {study.output.histories_MB:g}"
         )
     try:
-        with listener.progress(len(chosen.numbers)) as progress:
+        with announced_if_slow(listener, f"writing {HISTORIES}"), listener.progress(len(chosen.numbers)) as progress:
             path = keep_histories(saved, study, runs, progress, records)
     except InputError as error:
         return None, error

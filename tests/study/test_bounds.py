@@ -93,6 +93,7 @@ def test_the_greatest_number_of_cases_is_checked_to_the_end(
     assert main(["run", str(write_study(tmp_path, text)), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
     said = capsys.readouterr().err
     assert "writing run.json" in said
+    assert "writing histories.h5" in said
     assert "writing report.html" in said
     info = (tmp_path / "out/run.json").read_text(encoding="utf-8")
     assert sum(line.startswith('  {"case": ') for line in info.splitlines()) == most
