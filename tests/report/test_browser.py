@@ -29,7 +29,8 @@ def page(tmp_path_factory):
     return write_report(directory, [response("ERZ-NS", name, base) for name, base in FOUNDATIONS[1:3]])
 
 
-def test_names_and_notes_of_a_hostile_folder_are_words_and_stay_on_the_page(tmp_path):
+@pytest.mark.parametrize("width", [1200, 390])
+def test_names_and_notes_of_a_hostile_folder_are_words_and_stay_on_the_page(tmp_path, width):
     """As elements and as tooltips, and after whatever can be clicked was."""
     cases = [
         case_entry(name, {}, Pier(alpha=0.13, p=0.38), base)
@@ -56,7 +57,7 @@ def test_names_and_notes_of_a_hostile_folder_are_words_and_stay_on_the_page(tmp_
     found.scripts = document.scripts.length;
     found.elements = document.querySelectorAll("img, iframe, base, link, form, [onerror], [onload], [onmouseover]").length;
     """
-    found = browse(write_report(tmp_path, []), act)
+    found = browse(write_report(tmp_path, []), act, size=(width, 900))
     own = {"ran": None, "scripts": 1, "elements": 0}
     assert found == own | {"wrong": [], "requests": [], "wide": True}
 

@@ -347,7 +347,7 @@ def test_hostile_names_are_words_on_the_sheet(tmp_path):
 @needs_chromium
 def test_a_sheet_runs_and_fetches_nothing_and_is_as_wide_as_its_paper(tmp_path):
     found = in_browser(tmp_path, hostile(tmp_path), "found.ran = window.ran;")
-    assert (found.get("ran"), found["wrong"], found["requests"]) == (None, [], [])
+    assert (found.get("ran"), found["wrong"], found["requests"], found["wide"]) == (None, [], [], True)
     assert in_browser(tmp_path, sheet_of(tmp_path))["wide"]
 
 
