@@ -78,7 +78,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
   });
   const input = labelled("Search", document.createElement("input"));
   input.type = "search";
-  input.placeholder = "record, case, status …";
+  input.placeholder = "words in a row …";
   bar.append(count, copy);
   const filter = () => {
     const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
