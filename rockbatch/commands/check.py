@@ -83,7 +83,9 @@ def report(arguments: argparse.Namespace) -> int:
         paper=arguments.paper,
         pairs=dict(arguments.pair),
     )
-    if made.answer and str(arguments.out) != "-":
+    if str(arguments.out) == "-":
+        return 0
+    if made.answer:
         show(filled(_plain(made.answer)))
     say(str(made.path))
     if made.pdf and made.pdf != made.path:

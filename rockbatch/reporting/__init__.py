@@ -220,7 +220,8 @@ def statement(directory: str | os.PathLike[str], case: str | None = None) -> str
     wanted = names if case is None else chosen(case, names)
     if not wanted:
         nearest = closest(str(case), names)
-        raise NotFound(f"case {shown(case)}: there is no such case; did you mean {shown(nearest or names[0])}?")
+        instead = f"did you mean {shown(nearest)}?" if nearest else f"there is {', '.join(map(shown, names))}"
+        raise NotFound(f"case {shown(case)}: there is no such case; {instead}")
     paragraphs = [said.text for said in statements(finished) if said.case in wanted]
     return "\n\n".join(paragraphs or ["No ground motion could be used: there are no results."])
 

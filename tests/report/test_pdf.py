@@ -204,6 +204,14 @@ def test_without_typst_the_html_is_written_and_a_pdf_is_refused_with_the_remedy(
         assert ('pip install "rockbatch[pdf]"' in capsys.readouterr().err) == told
 
 
+def test_a_page_on_standard_output_stands_there_alone(tmp_path, capfd):
+    write_results(tmp_path)
+    assert main(["report", "--sheet", str(tmp_path), "--out", "-"]) == 0
+    said = capfd.readouterr()
+    assert said.out.rstrip().endswith("</html>")
+    assert said.err == ""
+
+
 def test_an_element_that_is_not_set_yet_is_refused_by_name():
     for html, name in (("<blockquote>said</blockquote>", "blockquote"), ("<p>some <del>text</del></p>", "del")):
         with pytest.raises(ValueError, match=f"<{name}>"):
@@ -275,7 +283,10 @@ def test_strips_of_two_columns_share_the_width_and_have_their_heads_above():
 def test_records_that_share_a_row_have_none_of_their_own():
     row = '<div class="row {}"><span class="of">{}</span></div>'
     rows = row.format("", "worst") + row.format("rest", "remaining") + row.format("folded", "second")
-    assert re.findall(r"\[(\w+)\]", blocks(parsed(f'<div class="dots">{rows}</div>'), Setting({}))) == ["worst", "remaining"]
+    assert re.findall(r"\[(\w+)\]", blocks(parsed(f'<div class="dots">{rows}</div>'), Setting({}))) == [
+        "worst",
+        "remaining",
+    ]
 
 
 def test_histories_keep_the_room_for_the_labels_of_their_axis():

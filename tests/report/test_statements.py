@@ -379,8 +379,9 @@ def test_the_command_prints_what_python_returns_for_all_cases_or_some(tmp_path, 
         assert printed == rb.statement(results, *arguments[1:]) + "\n"
         paragraphs = printed.split("\n\n")
         assert [re.match('Case "(.*?)" passes', one)[1] for one in paragraphs] == cases
-    assert main(["statement", str(results), "--case", "pad"]) == 2
-    assert 'did you mean "pads"?' in capsys.readouterr().err
+    for asked, told in (("pad", 'did you mean "pads"?'), ("x", 'there is "rock a", "rock b", "pads"')):
+        assert main(["statement", str(results), "--case", asked]) == 2
+        assert told in capsys.readouterr().err
 
 
 def test_verdicts_on_a_case_that_was_not_run_are_refused(tmp_path):
