@@ -23,9 +23,8 @@ def section_of(folder, *cases):
 @pytest.mark.slow
 def test_the_greatest_of_every_record_is_beside_its_case(tmp_path):
     table, page = section_of(tmp_path, RIGID, DAMPED)
-    heads, bare, damped = page.tables[""]
+    heads, damped = page.tables[""]  # the case without devices has no row
     worst = table[table["case"] == "damped"].max(numeric_only=True)
-    assert set(bare[2:]) == {""}
     values = dict(zip(heads, damped, strict=True))
     assert values["damper work [kJ]"].replace(",", "") == f"{worst['damper_work_kJ']:.1f}"
     assert values["damper stroke [mm]"] == f"{1000 * worst['damper_stroke_m']:.1f}"

@@ -2,6 +2,7 @@
 
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import CUT_SHORT
+from rockbatch.quantities.cases import devices
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import head
@@ -11,11 +12,13 @@ from rockbatch.reporting.table import Head, alarm, table
 
 
 def of_cases(finished: Finished, shown: list[Quantity], name: str) -> Markup:
-    """Return a table with a row for each case, pier and scale: the worst of its runs, column by column."""
+    """Return a table with a row for each case with devices, pier and scale: the worst of its runs, column by column."""
     rows: list[list[object]] = []
     for words, group in finished.groups():
         for place in group["series"].unique():
             runs, label = group[group["series"] == place], finished.series[int(place)].label
+            if not devices(finished.cases[int(place), int(runs["pier"].iloc[0])]):
+                continue
             ended = int(runs["status"].isin(CUT_SHORT).sum())
             counts = f"{len(runs) - ended} of {len(runs)}"
             cells = (_worst(column, runs, bool(ended)) for column in shown)
