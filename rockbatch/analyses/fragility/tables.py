@@ -359,7 +359,8 @@ def _about_undecided(curve: Curve) -> str:
         f"no curve ({fit.reason})" if isinstance(fit, NoCurve) else f"a median of {fit.median:.4g}"
         for fit in curve.readings
     )
-    remark += f"; they are left out: if beyond the limit they would give {beyond}, if within it {within}"
+    ways = f"if beyond the limit they would give {beyond}, if within it {within}"
+    remark += f"; they are left out: {ways if beyond != within else f'either way they would give {beyond}'}"
     return f"says little: {remark}" if curve.inconclusive else remark
 
 

@@ -165,6 +165,8 @@ def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_pat
     first, *rest = printed.splitlines()
     assert first == "Fragility for PGA, stripes; 1 of 1 curve says little: too many runs are undecided"
     assert any("says little: 30 of 120 runs undecided: 30 failed; they are left out" in line for line in rest)
+    same = replace(curve, readings=Readings(NoCurve("too few"), NoCurve("too few")))
+    assert str(described([same], spec, study, 30)).count("no curve (too few)") == 1
     rows = points([curve], spec, ())
     assert list(rows["undecided"]) == [15, 15, 0, 0]
     assert (rows["p_low"] <= rows["p"]).all()
