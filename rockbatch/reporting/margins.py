@@ -68,7 +68,7 @@ def _state(side: str, study: Finished) -> str:
     for kind, words in _IN_WORDS.items():
         if of_kind := kinds.get(kind):
             share = f" in {len(of_kind)} of {len(rows)} cases" if len(of_kind) < len(rows) else ""
-            share = share or (f" in all {len(rows)} cases" if len(rows) > 1 else "")
+            share = share or {1: "", 2: " in both cases"}.get(len(rows), f" in all {len(rows)} cases")
             parts.append(words(study, of_kind, share, len(rows) > 1))
     suite = any(verdict.verdict == FAIL for verdict in study.verdicts if not verdict.case)
     missing = len(study.info["unusable"]) if PASS in kinds else 0

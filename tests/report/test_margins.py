@@ -160,7 +160,7 @@ def test_a_check_that_fails_in_two_cases_is_one_check_and_another_is_one_more(tm
     assert (
         said(folders)
         .split("; ")[1]
-        .startswith("B fails strict at 600 % (springs, Lyttelton) and 1 more in all 2 cases.")
+        .startswith("B fails strict at 600 % (springs, Lyttelton) and 1 more in both cases.")
     )
 
 
@@ -380,7 +380,7 @@ def test_pairs_are_asked_for_on_the_command_line(tmp_path, capsys):
     folders = two(tmp_path, tables(), tables(case=[SPRINGS | {"name": "x"}, SPRINGS | {"name": "y", "zeta": 0.1}]))
     assert main(["report", *map(str, folders), "--pair", "springs=y"]) == 0
     assert capsys.readouterr().out.startswith(
-        "A passes all, closest 40 % (rotation, Lyttelton); B passes all in all 2 cases"
+        "A passes all, closest 40 % (rotation, Lyttelton); B passes all in both cases"
     )
     assert "springs with y" in (folders[0] / "compare-b.html").read_text(encoding="utf-8")
 
