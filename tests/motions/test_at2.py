@@ -175,6 +175,12 @@ def test_the_direction_is_that_of_the_header_else_that_of_the_name(title, azimut
         ("Big One, 10/29/83, 23:29 CEM, UP", "Big One", "10/29/83 23:29", "CEM", "UP"),
         ("Big One, 10/29/83, 1336, 000", "Big One", "10/29/83", "1336", "000"),  # four digits may be a station
         ("Big One, 19990921, Some Town", "Big One", "19990921", "Some Town", ""),
+        ("BIG ONE 10/06/2000 13:30, XYZ015, NS [K-NET]", "BIG ONE", "10/06/2000 13:30", "XYZ015", "NS"),
+        ("BIG ONE 10/18/89 00:05, ARRAY #3, 000 - CDMG 47381", "BIG ONE", "10/18/89 00:05", "ARRAY #3", "000"),
+        ("Big One, 1/17/1994, South - Annex", "Big One", "1/17/1994", "South - Annex", ""),
+        ("Big One, 1/17/1994, Town Hall, S - N", "Big One", "1/17/1994", "Town Hall", "S - N"),
+        ("Big One 1/16/1995 20:46 (UTC), Town, 000", "Big One", "1/16/1995 20:46 (UTC)", "Town", "000"),
+        ("Big One, 1/16/1995, 20h46, Town, 000", "Big One", "1/16/1995 20h46", "Town", "000"),
     ],
 )
 def test_parentheses_agencies_dates_and_clocks_of_a_title_stay_out_of_each_other(

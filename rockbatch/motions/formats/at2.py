@@ -43,11 +43,13 @@ _DATE = re.compile(
     re.IGNORECASE,
 )
 _CLOCK = re.compile(
-    r"(?:[01]?\d|2[0-4]):[0-5]\d(?::[0-5]\d(?:\.\d+)?)?(?: *(?:UTC?|GMT|Z|[AP]\.?M\.?|LOCAL|[A-Z]{1,3}[SD]T))?(?![\w:])|"
+    r"(?:[01]?\d|2[0-4])[:h][0-5]\d(?::[0-5]\d(?:\.\d+)?)?(?: *(?:UTC?|GMT|Z|[AP]\.?M\.?|LOCAL|[A-Z]{1,3}[SD]T))?(?![\w:])|"
     r"(?:[01]\d|2[0-3])[0-5]\d$",
     re.IGNORECASE,
 )
+_BRACKETS = str.maketrans("[]{}", "()()")
 _FIELD = re.compile(r"(?:[^,(]|\([^()]*(?:\)|$))+")  # between commas, which may stand in parentheses, too
+_BARE = re.compile(r"^(?:\w{1,3}(?= - )|\(?[^(]*)")  # "000" of "000 - CDMG" and of "000 (CDMG)"
 _SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
 _HEADER_LINES = 10  # the count is in line 4; hand-edited headers may be longer
 _HEADER_BYTES = 2048
@@ -137,8 +139,10 @@ def _title(line: str) -> tuple[str, str, str, str]:
     """Return event, date, station and component of header line 2; "" for those that are missing.
 
     "Duzce Turkey, 11/12/1999, Lamont 362, E" and "CAPE MENDOCINO 04/25/92 1806, CAPE MENDOCINO, 000 (CDMG …)". The text
-    after the component is of the agency; parentheses before it are of the station: "Pacoima Dam (upper left), 104".
+    after the component is of the agency; parentheses before it are of the station: "Pacoima Dam (upper left), 104". Other
+    brackets count as parentheses.
     """
+    line = line.translate(_BRACKETS)
     date = _DATE.search(line)
     if date is None:
         fields = _fields(line)
@@ -146,11 +150,15 @@ def _title(line: str) -> tuple[str, str, str, str]:
         return ("", "", "", _bare(fields[place]) if place > 0 else "")
     event = ", ".join(_fields(line[: date.start()]))
     behind = line[date.end() :]
-    same_field = re.match(r"[^,(]*", behind)
+    same_field = re.match(r"[^,(]*(?:\([^()]*\))?", behind)
     assert same_field is not None  # a pattern that an empty text matches
     day = (date[0] + same_field[0]).strip()
     fields = _fields(behind[same_field.end() :])
-    while len(fields) > 1 and (clock := _CLOCK.match(fields[0])) and (":" in clock[0] or _component_of(fields) != 1):
+    while (
+        len(fields) > 1
+        and (clock := _CLOCK.match(fields[0]))
+        and (re.search("[:h]", clock[0]) or _component_of(fields) != 1)
+    ):
         rest = fields[0][clock.end() :].strip(" ,-")
         day, fields = f"{day} {clock[0]}", ([rest] if rest else []) + fields[1:]
     place = _component_of(fields)
@@ -165,8 +173,8 @@ def _fields(text: str) -> list[str]:
 
 
 def _bare(field: str) -> str:
-    """Return a field of a title without parentheses at its end: "000 (CDMG STATION 89005)" gives "000"."""
-    return re.sub(r"(?<=[^\s(])\s*\(.*", "", field).strip()
+    """Return a field of a title that is no direction without what is behind it: "000 (CDMG STATION 89005)" gives "000"."""
+    return field if orientation_of(field) else _BARE.findall(field)[0].strip()
 
 
 def _component_of(fields: list[str]) -> int:
