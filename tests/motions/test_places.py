@@ -80,12 +80,13 @@ STATIONS_ON_GROUND = (
     "Shi Zhuang", "Chimney Rock", "San Pedro - Palos Verdes", "Lagerheim", "Bridge Street Fire Sta",
     "Columbia - Airport", "Santa Cruz Pier", "Bent Creek", "Stone Tower Inn", "Wall Springs", "Piermont",
     "Top of the World", "Terrasse-Vaudreuil", "Remblai", "Damm", "Terrace", "Quinto", "Segundo Ruiz Belvis", "San Pietro 2",
-    "Cortina d'Ampezzo", "Losa del Obispo",
+    "Cortina d'Ampezzo", "Losa del Obispo", "Somewhere FS28", "Pier 3 Street",
 )
 STATIONS_ON_STRUCTURES = (
     "Madeup Dam L Abut", "Madeup Dam - Southwest Abutment", "Dam (crest)", "Dam, Crest", "ELAZIG KEBAN (KRET-CREST)",
     "TORRE (ROOF)", "Bldg, 7th floor", "Some Bridge - Deck", "Meloland Overpass (Embankment)", "Overpass - Pile Cap",
     "Dam - Left Abutment", "Hospital - Penthouse", "Treasure Is. downhole 30 m", "Somewhere, Level 5",
+    "Bay Bridge, pier 3", "Viadotto, base pila 7", "Bridge - Bent B3", "Tower no. 2", "Presa, berma", "Dam, berms",
     "Hotel; 5th Fl", "Overpass, Footing", "Base of Column, Overpass", "Dam (right crest)",
 )
 # fmt: on
@@ -231,6 +232,8 @@ def test_a_depth_over_two_metres_is_below_the_ground_in_either_unit(place):
     [
         (["Station: Golden Bridge, top of pier 3"], "structure"),
         (["Station: HTL", "Location: Roof"], "structure"),
+        (["Station: Golden Bridge", "Location: approach fill, east end"], "structure"),
+        (["Station: Golden Bridge, pier 3"], "structure"),
         (["Estación: Hotel Plaza, azotea"], "structure"),
         (["Station name = WLA GL-22m"], "borehole"),
         (["Location: Dam downhole 30 m"], "borehole"),

@@ -157,7 +157,7 @@ def _title(line: str) -> tuple[str, str, str, str]:
     while (
         len(fields) > 1
         and (clock := _CLOCK.match(fields[0]))
-        and (re.search("[:h]", clock[0]) or _component_of(fields) != 1)
+        and not (clock[0].isdigit() and _component_of(fields) == 1)
     ):
         rest = fields[0][clock.end() :].strip(" ,-")
         day, fields = f"{day} {clock[0]}", ([rest] if rest else []) + fields[1:]

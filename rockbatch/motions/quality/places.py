@@ -46,9 +46,10 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "levee, berm, isolator, isolation, isoltr, isol, midspan, mid span, wingwall, wing wall, shear wall, core wall, "
         "spillway, dam top, top of dam, dam body, upstream face, downstream face, pylon, superstructure, superstr, pier cap, "
         "pier top, top of pier, pier base, base of pier, tower top, top of tower, tower base, base of tower, hinge, pedestal, "
-        "anchor block, tailings dam, mezz, outlet, outlet works, intake, penstock, gatehouse, gate house, soffit, structure type",
+        "anchor block, tailings dam, mezz, outlet, outlet works, intake, penstock, gatehouse, gate house, soffit, "
+        "structure type, approach fill, approach slab, road fill",
         "es pt": "techo, azotea, tejado, estribo, coronacion, corona de la presa, corona de la cortina, "
-        "cortina de la presa, coronamiento, encepado, terraplen*, "
+        "cortina de la presa, coronamiento, encepado, terraplen*, berma, "
         "aislador*, cuerpo de la presa, aliviadero, vertedero, vertedouro, telhado, "
         "tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
         "fr it": "toiture, culee, couronnement, semelle, isolateur, appareil d appui, corps du barrage, sottotetto, impalcato, "
@@ -205,7 +206,7 @@ def _folded(text: str) -> str:
 
 @lru_cache(maxsize=64)
 def _pattern(*kinds: str) -> re.Pattern[str]:
-    """Return a pattern that matches the words of these kinds in ``_PLACES``, and their plurals, in a folded text."""
+    """Return a pattern of the words of these kinds in ``_PLACES``, and their plurals from three letters on, in a folded text."""
     words = {
         word.strip().casefold() for kind in kinds for listed in _PLACES[kind].values() for word in listed.split(",")
     }
@@ -213,7 +214,7 @@ def _pattern(*kinds: str) -> re.Pattern[str]:
     plain = sorted(words - {word for word in words if re.search(f"[{_WIDE}]", word)}, key=len, reverse=True)
     ends = [
         re.sub(r"\\? ", "[- .]*", re.escape(word.removesuffix("*")))
-        + (f"[{_LETTERS}]*" if word.endswith("*") else "(?:s|es)?")
+        + (f"[{_LETTERS}]*" if word.endswith("*") else "(?:s|es)?" if len(word) > 2 else "")
         for word in plain
     ]
     return re.compile(rf"(?<![{_LETTERS}])(?:{'|'.join(ends)})(?![{_LETTERS}])" + "".join(f"|{word}" for word in wide))
@@ -223,13 +224,20 @@ def _is_on_structure(text: str, is_name: bool) -> bool:
     """Return whether a folded text places a sensor on a structure, or above the ground floor; False if it says free field."""
     if _pattern("free field").search(text):
         return False
-    kinds = ("structure",) if is_name else ("structure", "structure, in places only")
-    first = next((m for m in _pattern(*kinds).finditer(text) if not _is_street(text, m.end(), is_name)), None)
+    parts = _parts_of_names() if is_name else _pattern("structure", "structure, in places only")
+    first = next((m for m in parts.finditer(text) if not _is_street(text, m.end(), is_name)), None)
     if first is not None and not _is_beside(text[: first.start()]):
         return True
     if not is_name and re.search(rf"{_LENGTH} above\b", text):
         return True
     return _upper_floor().search(text) is not None
+
+
+@lru_cache(maxsize=1)
+def _parts_of_names() -> re.Pattern[str]:
+    """Return a pattern of the words for structures in stations' names; words of places only with a number: "pier 3"."""
+    numbered = _pattern("structure, in places only").pattern
+    return re.compile(rf"{_pattern('structure').pattern}|(?:{numbered})[ .#-]*(?:no[. ]*)?[a-z]?-?\d+\b")
 
 
 def _is_beside(before: str) -> bool:
