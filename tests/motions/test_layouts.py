@@ -83,8 +83,11 @@ def test_an_amplitude_of_abaqus_is_read(tmp_path):
 
 
 def test_columns_that_are_no_pairs_stay_columns(tmp_path):
-    found = read(tmp_path, "time(s),NS(g),time(s),EW(g)\n" + in_columns(T, A, T, B))
-    assert "columns of time" in found.unusable[0].reason
+    found = read(tmp_path, "time(s),NS(g),time(s),EW(g)\n" + in_columns(T, A, T + DT, B))
+    assert "2 columns of time that differ" in found.unusable[0].reason
+    first, second = read(tmp_path, "time(s),NS(g),time(s),EW(g)\n" + in_columns(T, A, T, B)).motions
+    assert is_a(first)
+    np.testing.assert_allclose(second.horizontal, B, atol=1e-9)
     found = read(tmp_path, "time(s),NS(g),EW(g),UD(g)\n" + in_columns(T, A, B, C))
     assert len(found.motions) == 2
 
@@ -101,6 +104,7 @@ def test_columns_that_are_no_pairs_stay_columns(tmp_path):
         f"{N}\n{DT}\n{pairs(4)}",
         f"{N} {DT}\n{pairs(3)}",
         f"Motion of a program\n{N} {DT}\n{pairs(1, chr(9))}",
+        f"title\n{N}, {DT} NPTS, DT\n" + "\n".join(" ".join(map(str, A[i : i + 6])) for i in range(0, N, 6)),
         f"title\n{N} {DT} 0\n" + "\n".join(" ".join(map(str, A[i : i + 5])) for i in range(0, N, 5)),
     ],
 )

@@ -193,6 +193,19 @@ def test_a_study_states_the_unit_that_one_file_lacks_and_loses_no_other(tmp_path
             "Acc. (cm/s2)",
         ),
         *("AmplitudeUnit: gal", "Corrected acceleration values in units of cm/sec2.", "Units: cm/s**2"),
+        *(
+            "Acceleration (units: gal)",
+            "Corrected record (units are gal)",
+            "Baseline corrected; units: gal",
+            "Values are in gal",
+        ),
+        *(
+            "Acceleration, cm/s2",
+            "corrected acceleration - cm/sec/sec",
+            "Unit of acceleration: gal",
+            "Acceleration / gal",
+        ),
+        *("Aceleración en cm/s2", "Beschleunigung in cm/s2", "Accelerations expressed in gal"),
     ],
 )
 def test_a_unit_in_the_text_of_a_header_counts_and_is_not_overridden(tmp_path, line):
@@ -202,7 +215,7 @@ def test_a_unit_in_the_text_of_a_header_counts_and_is_not_overridden(tmp_path, l
 
 
 def test_the_unit_of_a_peak_and_words_behind_in_are_no_unit_of_the_data(tmp_path):
-    write(tmp_path, "# Peak acceleration (cm/s2): 98.1\n# acceleration in station 3\n# dt = 0.01", A)
+    write(tmp_path, "# Peak acceleration (cm/s2): 98.1\n# acceleration in station 3\n# Data, G. Smith\n# dt = 0.01", A)
     assert "has no unit" in reason(tmp_path)
     np.testing.assert_allclose(one(tmp_path, unit="m/s2").horizontal, A, atol=1e-6)
 

@@ -72,9 +72,13 @@ _STATED = re.compile(
     r"\s*[:=]\s*(?:UTC,\s*)?(?P<unit>(?:\d*\.?\d+ )?\S+)",
     re.IGNORECASE,
 )
-_SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: gal; Acc. (cm/s2)
-    r"(?:\bunits? of|\b(?:acc|accel|acceleration|amplitude|data)s?\.?(?:[ _]*(?:data|values|units?|time series|time history))?"
-    r"\s*(?:\bin\b(?: units? of)?|[:=(\[]))\s*(?P<unit>(?:(?<=units of )\d*\.?\d+ )?[^\s,;()\[\]]+)",
+_ACCELERATION = r"(?:acc|acel|beschl|ivme)\w*\.?"
+_OF_SERIES = r"(?:[ _]*(?:data|values|units?|time series|time history|record))?\s*"
+_SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; units are g; Acceleration unit: gal; Acc. (cm/s2); acceleration, g
+    rf"\b(?:units?(?: of acc\w*)?\s*(?:\b(?:of|is|are)\b|[:=])|{_ACCELERATION}{_OF_SERIES}(?:[,/]|- )|"
+    rf"(?:{_ACCELERATION}|(?:amplitude|data|value)s?){_OF_SERIES}(?:[:=(\[]|"
+    r"(?:(?:is|are|measured|expressed|given)\s+)*\b(?:in|en|em)\b(?: units? of| fractions? of)?))"
+    r"\s*[(\[]?(?!units?\b)(?P<unit>(?:(?<=units of )\d*\.?\d+ )?[^\s,;()\[\]]+)",
     re.IGNORECASE,
 )
 _PEAK = re.compile(r"\b(?:pga|peak|max(?:imum)?)\b", re.IGNORECASE)

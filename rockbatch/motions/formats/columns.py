@@ -333,8 +333,8 @@ def _on_one_step(
 ) -> tuple[float, Samples, tuple[str, ...]]:
     """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes."""
     times = [i for i, column in enumerate(columns) if column.is_time]
-    if len(times) > 1:
-        raise InputError(f"found {len(times)} columns of time; expected one")
+    if any(not np.array_equal(table[:, times[0]], table[:, i]) for i in times[1:]):
+        raise InputError(f"found {len(times)} columns of time that differ; expected one")
     stated = stated_step(header)
     if not times:
         impossible = (

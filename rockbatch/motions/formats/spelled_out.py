@@ -18,6 +18,7 @@ _OF_SERVICE = re.compile(  # of EarthScope's time series, in pairs or lists
     r"^TIMESERIES\s+\S+,\s*(?P<npts>\d{1,9}) samples,\s*(?P<rate>[\d.]{1,12}) sps,.*,\s*(?P<unit>[^\s,]+)$",
     re.IGNORECASE,
 )
+_COUNT_FIRST = re.compile(r"^(?P<npts>\d{1,9})[,\s]+(?P<dt>[\d.]{1,12})[,\s]+NPTS\s*,?\s*DT\b", re.IGNORECASE)
 _VERTICAL_DOWN = re.compile(  # a whole line: others may speak of depth, or of the signs before a conversion
     r"vertical(?: (?:component|axis|acceleration|channel))?\s*(?:[:=]|\bis\b)?\s*(?:positive|pos\.?)(?: is)? ?down(?:wards?)?\.?",
     re.IGNORECASE,
@@ -29,8 +30,10 @@ def spelled_out(line: str) -> list[str]:
     """Return a header line, and a named line for each property it states without a name; signs in brackets are in its labels.
 
     "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down,
-    and "Column 2: H1 (+ is 35.0)" is 035.
+    "Column 2: H1 (+ is 35.0)" is 035, and "500 0.01 NPTS DT" a count and a step.
     """
+    if first := _COUNT_FIRST.match(line):
+        return [f"NPTS = {first['npts']}, DT = {first['dt']}"]
     if along := _ALONG.match(line):
         return [f"{along['column']}{along['azimuth'].zfill(3)}{along['unit'] or ''}"]
     if service := _OF_SERVICE.match(line):
