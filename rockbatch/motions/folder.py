@@ -3,6 +3,7 @@
 import os
 import re
 import sys
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
@@ -24,7 +25,7 @@ from rockbatch.motions.identity.directions import judge_directions
 from rockbatch.motions.identity.doubles import tell_use_of_originals, without_doubles
 from rockbatch.motions.identity.leaving_out import LeaveOut, Reading
 from rockbatch.motions.identity.pairing import to_motions
-from rockbatch.motions.labels.evidence import Kind, Statement
+from rockbatch.motions.labels.evidence import Kind, Statement, same_direction
 from rockbatch.motions.labels.orientation import (
     Orientation,
     accidental,
@@ -33,6 +34,7 @@ from rockbatch.motions.labels.orientation import (
     in_numbered_sets,
     is_clock,
     numbered,
+    orientation_of,
     split_stem,
     told_apart,
 )
@@ -240,7 +242,7 @@ def read_files(
         for file, state, its_readings in read
         for reading in _unless_changed(its_readings, file, state, settings.names[file.path].site)
     ]
-    companions = _without_companions(_without_renamed(readings, files))
+    companions = _without_companions(_without_renamed(_out_of_folders_of_directions(readings), files))
     return companions, {file.source: file.path for file in files}, manifest.sequences
 
 
@@ -283,6 +285,23 @@ def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
         else:
             kept.append(reading)
     return kept
+
+
+def _out_of_folders_of_directions(readings: Sequence[Reading]) -> list[Reading]:
+    """Return the readings, components of two folders or more that are called after their directions as of the folder above.
+
+    Archives of data centres have such folders: HNE.D, HNN.D, HNZ.D.
+    """
+    components = [reading for reading in readings if isinstance(reading, Component)]
+    called = {
+        PurePosixPath(folder): way
+        for folder, members in grouped(components, lambda c: c.folder).items()
+        if (way := orientation_of(PurePosixPath(folder).name.partition(".")[0]))
+        and all(any(same_direction(way, s.orientation) for s in c.statements) for c in members)
+    }
+    number = Counter(folder.parent for folder in called)
+    above = {str(folder): str(folder.parent) for folder in called if number[folder.parent] > 1}
+    return [replace(r, folder=above.get(r.folder, r.folder)) if isinstance(r, Component) else r for r in readings]
 
 
 def _folder(reading: Reading) -> str:

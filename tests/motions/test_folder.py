@@ -61,6 +61,15 @@ def test_components_in_different_folders_are_not_paired(tmp_path):
     assert found.unusable[0].source == "b/RSN7_X_Y-UP.AT2"
 
 
+@pytest.mark.parametrize(
+    ("folders", "upright"), [(("000.D", "090.D", "UP.D"), 2), (("090", "000", "UP"), 0), (("a.D", "b.D", "UP.D"), 0)]
+)
+def test_components_in_folders_called_after_their_directions_are_paired(tmp_path, folders, upright):
+    for seed, (folder, label) in enumerate(zip(folders, ("000", "090", "UP"), strict=True)):
+        write_at2(tmp_path / "2019" / folder, f"x.{label}.AT2", wiggle(50, seed), title=title(label))
+    assert [*vertical_of(read_motions(tmp_path)).values()].count("2019/UP.D/x.UP.AT2") == upright
+
+
 def test_a_dwn_component_is_turned_up_and_it_is_said(tmp_path):
     up = wiggle(50, 2)
     write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))
