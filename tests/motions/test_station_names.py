@@ -128,9 +128,11 @@ def test_records_of_a_station_in_many_earthquakes_are_not_all_compared(monkeypat
     assert len(compared) < 1000
 
 
-def test_several_records_of_one_station_differ_in_event_or_folder():
+def test_several_records_of_one_station_differ_in_event_time_or_folder():
     kobe, niigata = ([component("c", sensor=Sensor("TAK"), event=event)] for event in ("1995", "2004"))
     assert station_names([kobe, niigata]) == ["TAK 1995", "TAK 2004"]
+    july, august = ([component("c", sensor=Sensor("TAK"), start=moment)] for moment in (1562383163.0, 1565061563.0))
+    assert station_names([july, august]) == ["TAK 2019-07-06 03:19", "TAK 2019-08-06 03:19"]
     one, two = ([component("c", site="LGP", folder=f"/{folder}")] for folder in ("loma", "other"))
     assert station_names([one, two]) == ["LGP loma", "LGP other"]
     assert station_names([[component("x")], [component("x")]]) == ["x", "x (2)"]

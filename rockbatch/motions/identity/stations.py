@@ -9,6 +9,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
+from datetime import UTC, datetime
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -149,7 +150,7 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
     """Return a name for each of ``stations``, from ``by_station``; those of one record share their name.
 
     It is PEER's number, the header's station, or the site by the file's name; records of one name get the network, the
-    event, the folder or a number added.
+    event, the time, the folder or a number added.
     """
     root = list(range(len(stations)))
 
@@ -177,10 +178,18 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
         list(map(station_of, firsts)),
         lambda i, name: f"{firsts[i].sensor.network or ''}.{name}".strip("."),
         lambda i, name: f"{name} {firsts[i].event}".strip(),
+        lambda i, name: f"{name} {_minute(firsts[i])}".strip(),
         lambda i, name: f"{name} {next((p for p in reversed(firsts[i].folder.split('/')) if p != name), '')}".strip(),
     )
     name_of = dict(zip(records, names, strict=True))
     return [name_of[first_of(i)] for i in range(len(stations))]
+
+
+def _minute(component: Component) -> str:
+    """Return day and minute of the first sample, in UTC: "2019-07-06 03:19"; "" without a date."""
+    if not component.dated or component.start is None:
+        return ""
+    return f"{datetime.fromtimestamp(component.start, UTC):%Y-%m-%d %H:%M}"
 
 
 def station_of(component: Component) -> str:
