@@ -120,7 +120,7 @@ def test_miniseed_in_an_archive_takes_the_station_xml_beside_it_there(tmp_path):
 
 def test_companions_are_left_out_and_hidden_files_passed_over_as_in_folders(tmp_path):
     other = {"_SearchResults.csv": "x", "notes.pdf": "x", "RSN1.VT2": "x", "motions.toml": "x", "stations.xml": "<x/>"}
-    passed = {"README.txt": "x", "__MACOSX/._x.AT2": "x", ".git/x.AT2": "x"}
+    passed = {"README.txt": "x", "readme.txt.gz": "x", "__MACOSX/._x.AT2": "x", ".git/x.AT2": "x"}
     write_zip(tmp_path / "x.zip", {"x.AT2": at2("x.AT2", 1), "unknown.xyz": "x", **other, **passed})
     found = read_motions(tmp_path)
     assert [motion.source for motion in found.motions] == ["x.zip/x.AT2"]
@@ -379,7 +379,7 @@ def test_an_archive_is_opened_and_listed_once_whatever_it_holds(tmp_path, monkey
     assert len(listed) == (2 if name == "all.zip" else 1)
 
 
-@pytest.mark.parametrize("name", ["TST.ps.gz", "plot.PNG.gz", "notes.pdf.gz"])
+@pytest.mark.parametrize("name", ["TST.ps.gz", "plot.PNG.gz", "plot.svgz", "notes.pdf.gz"])
 def test_a_packed_plot_or_text_in_an_archive_is_left_out_and_a_packed_record_is_not(tmp_path, name):
     write_at2(tmp_path, "x000.AT2", wiggle(60))
     record = (tmp_path / "x000.AT2").read_bytes()

@@ -50,6 +50,11 @@ def is_archive(path: Path | PurePosixPath) -> bool:
     return path.name.lower().endswith((".zip", *_TARS))
 
 
+def is_read_me(name: str) -> bool:
+    """Return whether a file is called read-me, whatever its suffixes: readme.txt.gz."""
+    return name.partition(".")[0].lower() == "readme"
+
+
 def not_read(path: Path) -> str:
     """Return why an archive of another kind (.7z, .rar) is not read, by its suffix; "" for a .zip or .tar and other files."""
     if bare(path).suffix.lower() in _PACKED and not is_archive(path):
@@ -118,7 +123,7 @@ def _listed(archive: Path, outer: str = "") -> Iterator[Member]:
     """
     for entry in _opened_archive(archive, state(archive)).entries:
         name, path = PurePosixPath(entry.name), archive / _member_path(entry.name)
-        if any(part.startswith(".") and part != ".." for part in name.parts) or name.stem.lower() == "readme":
+        if any(part.startswith(".") and part != ".." for part in name.parts) or is_read_me(name.name):
             continue
         refusal = _refusal(entry) or (_WITHIN if outer and is_archive(name) else "")
         member = Member(path, f"{outer}{entry.name}", refusal, entry.size)

@@ -17,7 +17,7 @@ _COMPANIONS = {
     ".cff .ini .cfg",
     "a spreadsheet, which is not opened; if it holds records, save its sheets as CSV (UTF-8)": ".xls .xlsx .xlsm .ods",
     "a file of the operating system": ".db .lnk",
-    "a picture": ".png .jpg .jpeg .gif .svg .tif .tiff .ps .eps",
+    "a picture": ".png .jpg .jpeg .gif .svg .svgz .tif .tiff .ps .eps",
     "a program": ".py .m .ipynb .r .sh",
     "the velocity of a record": ".vt2 .vel",
     "the displacement of a record": ".dt2 .disp .dis",
@@ -132,6 +132,6 @@ def _paths_below(folder: Path) -> Iterator[Path]:
         folders[:] = [name for name in folders if not name.startswith(".")]
         links = [name for name in folders if os.path.islink(os.path.join(parent, name))]
         for name in [*files, *links]:
-            if not name.startswith(".") and Path(name).stem.lower() != "readme":
+            if not name.startswith(".") and not archives.is_read_me(name):
                 yield Path(parent, name)
     yield from closed
