@@ -90,6 +90,16 @@ def test_a_copy_that_is_less_corrected_and_larger_is_said_to_be_both(tmp_path):
     )
 
 
+@pytest.mark.parametrize("stages", [("automatic", "manual"), ("manual", "automatic")])
+def test_a_copy_that_was_processed_by_hand_is_used_before_an_automatic_one(tmp_path, stages):
+    for name, stage in zip("ab", stages, strict=True):
+        (tmp_path / name).mkdir()
+        text = dyna_text((1.1 if stage == "manual" else 1.0) * 981.0 * wiggle(400), PROCESSING=stage)
+        (tmp_path / name / "IT.AQK..HNE.ASC").write_text(text)
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.source == f"{'ab'[stages.index('manual')]}/IT.AQK..HNE.ASC"
+
+
 def test_where_nothing_tells_which_factor_is_right_it_is_asked_for(tmp_path):
     write_at2(tmp_path, "one.AT2", wiggle(60), title=title("0"))
     write_at2(tmp_path, "two.AT2", 2.0 * wiggle(60), title=title("0"))

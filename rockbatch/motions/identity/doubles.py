@@ -25,7 +25,7 @@ _UNITS, _SAME_UNIT = (3.2808, 9.81, 10.0, 32.185, 39.37, 98.1, 100.0, 386.22, 98
 """Factors between units of acceleration (10 is g/10), and how far off they may be, relative: g is 9.80665 to 9.81 m/s²."""
 _UNEQUAL = 1.5  # ratio of the peaks of two copies that is reported
 _MOVING = 1e-3  # of the peak
-_SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
+_SECONDARY = re.compile(r"(?<!un)(?<!not_)scaled|(?<![a-z])automatic(?![a-z])", re.IGNORECASE)
 _RAW = re.compile(r"(?<![a-z])(?:raw|uncorr(?:ected)?)(?![a-z])", re.IGNORECASE)
 
 
@@ -151,9 +151,9 @@ def _ranks(
     """Return sort keys of components with copies, the least for the one to use: the key of its set, then its index.
 
     In this order: chosen by a manifest; sound before grossly odd; corrected before unknown before uncorrected; not called
-    scaled; not called raw, if no header says; two horizontals and a vertical before fewer; a unit of acceleration before counts;
-    the finer time step; the stronger shaking, by powers of two; the longer shaking, by seconds; the suffix of a format; the
-    shorter name; the first.
+    scaled, or automatic, also by the header; not called raw, if no header says; two horizontals and a vertical before fewer; a
+    unit of acceleration before counts; the finer time step; the stronger shaking, by powers of two; the longer shaking, by
+    seconds; the suffix of a format; the shorter name; the first.
     """
     sets: dict[int, list[int]] = {}
     for members in sets_of(components):
@@ -171,7 +171,7 @@ def _ranks(
             not any(c.preferred for c in of_set),
             any(c.contradiction or gross_findings(c) for c in of_set),
             _CORRECTED[first.processed],
-            any(_SCALED.search(c.source) for c in of_set),
+            any(_SECONDARY.search(f"{c.source} {c.station}") for c in of_set),
             first.processed is None and any(_RAW.search(c.source) for c in of_set),
             -min(2, across) - (across < len(of_set)),
             not first.unit,
