@@ -101,6 +101,7 @@ FORMATS = (
         columns.read_columns,
         anywhere=False,
     ),
+    Format("text columns", "", columns.states_acceleration, columns.read_columns),
 )
 """Formats in the order of trial: an AT2 file saved as .txt is AT2, other text is columns, also a table called .AT2."""
 
