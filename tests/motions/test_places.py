@@ -80,7 +80,7 @@ STATIONS_ON_GROUND = (
     "Shi Zhuang", "Chimney Rock", "San Pedro - Palos Verdes", "Lagerheim", "Bridge Street Fire Sta",
     "Columbia - Airport", "Santa Cruz Pier", "Bent Creek", "Stone Tower Inn", "Wall Springs", "Piermont",
     "Top of the World", "Terrasse-Vaudreuil", "Remblai", "Damm", "Terrace", "Quinto", "Segundo Ruiz Belvis", "San Pietro 2",
-    "Cortina d'Ampezzo", "Losa del Obispo", "Somewhere FS28", "Pier 3 Street",
+    "Cortina d'Ampezzo", "Losa del Obispo", "Somewhere FS28", "Pier 3 Street", "7-story hotel", "Edificio de 7 pisos",
 )
 STATIONS_ON_STRUCTURES = (
     "Madeup Dam L Abut", "Madeup Dam - Southwest Abutment", "Dam (crest)", "Dam, Crest", "ELAZIG KEBAN (KRET-CREST)",
@@ -234,6 +234,14 @@ def test_a_depth_over_two_metres_is_below_the_ground_in_either_unit(place):
         (["Station: HTL", "Location: Roof"], "structure"),
         (["Station: Golden Bridge", "Location: approach fill, east end"], "structure"),
         (["Station: Golden Bridge, pier 3"], "structure"),
+        (["Station: LA - City Hall, 5th floor"], "structure"),
+        (["Sensor location: tower"], "structure"),
+        (["Location: Torre del Greco"], ""),  # a town
+        (["Sensor: Roof"], "structure"),
+        (["Site: Crest of dam"], "structure"),
+        (["Konum: Köprü, orta ayak"], "structure"),
+        (["観測点：屋上"], "structure"),
+        (["Location: 34.05, -118.25, elevation 80 m"], ""),
         (["Estación: Hotel Plaza, azotea"], "structure"),
         (["Station name = WLA GL-22m"], "borehole"),
         (["Location: Dam downhole 30 m"], "borehole"),

@@ -48,9 +48,14 @@ _OF_OTHER_DATA = re.compile(r"\b(?:original|raw|recorder|instrument|resampled|fr
 # possessive (*+), so that matching any header line takes the square of its length at most
 _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>[^()\[\]]*?)\s*+(?:{_UNIT}|$)", re.IGNORECASE)
+_OF_SENSOR = r"(?:sensor|instrument|gau?ge) (?:location|place|position|site)|position"
+_SITES = (
+    "(?:recording |station )?(?:station|site|location|place)|sensor|gau?ge|estaci[oó]n|sitio|lugar|ubicaci[oó]n|esta[cç][aã]o|"
+    "stazione|luogo|posizione|lieu|emplacement|istasyon|konum|yer|ort|standort|地点|観測点|設置場所|台站|測站|测点|位置"
+)
 _PLACE = re.compile(
-    r"^(?:recording )?(?:station|location|place|estaci[oó]n|esta[cç][aã]o|stazione|istasyon|lugar|ort|standort)"
-    r"(?: ?(?:name|location|nombre))?\s*[:=]\s*(?P<words>[^\W\d_]{3,}.*|\S*[^\x00-\x7f].*)$",
+    rf"^(?:(?P<of_sensor>{_OF_SENSOR})|{_SITES})(?: ?(?:name|location|nombre))?\s*[:=：]\s*"
+    r"(?P<words>.*[^\W\d_]{3,}.*|\S*[^\x00-\x7f].*)$",
     re.IGNORECASE,
 )
 _OF_SOIL = re.compile(r"rock\b|\bsoil|water\b|\bvs|\bclass\b", re.IGNORECASE)
@@ -341,13 +346,19 @@ def stated_direction(header: Sequence[str]) -> str:
 
 
 def stated_place(header: Sequence[str]) -> str | None:
-    """Return the words in lines such as ``Station: Bay Bridge`` and ``Location: top of pier 3`` that place a sensor.
+    """Return the words in lines such as ``Station: Bay Bridge, pier 3`` and ``Sensor location: deck`` that place a sensor.
 
-    ``None`` unless they place it on a structure or in a borehole. Phrases on the soil, whose depths are not the sensor's, do not
-    count.
+    ``None`` unless they place it on a structure or in a borehole. All but those of a sensor are names, of a town perhaps. Phrases
+    on the soil, whose depths are not the sensor's, do not count.
     """
-    phrases = (phrase for match in map(_PLACE.match, header) if match for phrase in match["words"].split(","))
-    where, words = stand("", ",".join(phrase for phrase in phrases if not _OF_SOIL.search(phrase)))
+    stated = [(bool(match["of_sensor"]), match["words"].split(",")) for match in map(_PLACE.match, header) if match]
+    place, name = (
+        ",".join(
+            phrase for kind, phrases in stated if kind is of_sensor for phrase in phrases if not _OF_SOIL.search(phrase)
+        )
+        for of_sensor in (True, False)
+    )
+    where, words = stand(place, name)
     return None if where is Stand.GROUND else words
 
 

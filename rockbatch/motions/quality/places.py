@@ -49,16 +49,17 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "anchor block, tailings dam, mezz, outlet, outlet works, intake, penstock, gatehouse, gate house, soffit, "
         "structure type, approach fill, approach slab, road fill",
         "es pt": "techo, azotea, tejado, estribo, coronacion, corona de la presa, corona de la cortina, "
-        "cortina de la presa, coronamiento, encepado, terraplen*, berma, "
+        "cortina de la presa, cortina de presa, coronamiento, encepado, terraplen*, berma, "
         "aislador*, cuerpo de la presa, aliviadero, vertedero, vertedouro, telhado, "
         "tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
         "fr it": "toiture, culee, couronnement, semelle, isolateur, appareil d appui, corps du barrage, sottotetto, impalcato, "
-        "coronamento, pila del ponte, isolatore, isolatori, corpo diga, evacuateur*, sfioratore",
+        "coronamento, pila del ponte, isolatore, isolatori, corpo diga, evacuateur*, sfioratore, "
+        "tablier du pont",
         "de": "dachgeschoss, ueberbau, uberbau, brueckenueberbau, bruckenuberbau, "
-        "fahrbahnplatte, widerlager, dammkrone, mauerkrone, fundamentplatte, pfahlkopf*, "
+        "fahrbahnplatte, widerlager, dammkrone, mauerkrone, staumauer krone, fundamentplatte, pfahlkopf*, "
         "brueckenpfeiler*, bruckenpfeiler*, isolatorebene, grundablass, hochwasserentlastung",
         "tr el": "dolusavak, dipsavak, "
-        "catisi, tabliye, tabliyesi, kenar ayak, kenar ayagi, orta ayak, kret, kreti, izolator*, taratsa, katastroma, "
+        "catisi, cati kati, tabliye, tabliyesi, kenar ayak, kenar ayagi, orta ayak, kret, kreti, izolator*, taratsa, katastroma, "
         "akrovathro, mesovathro, epichoma, στεγη, ταρατσα, καταστρωμα, ακροβαθρο, στεψη, υποστυλωμα*, μεσοβαθρο, επιχωμα, "
         "μονωτηρ*",
         "ja zh": "okujo, okujou, kyodai, kyokyaku, menshin, 屋上, 床版, 橋台, 天端, 橋脚, フーチング, 盛土, 免震, "
@@ -265,7 +266,8 @@ def _upper_floor() -> re.Pattern[str]:
     number = r"(?<![\d.b-])(?:[2-9]|[1-9]\d)(?![\d])"
     ordinal = r"(?:st|nd|rd|th|er|do|to|mo|e|eme|ieme|de|ste|o|a|°|º|ª|\.|os|οσ|inci|uncu|ncu|-?и|-?м)?"
     words = rf"\b(?:{'|'.join(_ORDINALS.split())})\b"
-    before = rf"(?:{number}{ordinal}|{words}|{_IN_CHINESE})[ -]*(?:{floor})"
+    height = r"\d+[ -]*(?:stor(?:e?y|ies)|floors|pisos|plantas|andares|piani|etages)\b"  # of a building: 7-story hotel
+    before = rf"(?!{height})(?:{number}{ordinal}|{words}|{_IN_CHINESE})[ -]*(?:{floor})"
     return re.compile(rf"{before}|(?:{floor})[ .#]*(?:no[. ]*)?(?:{number}|{words})")
 
 
