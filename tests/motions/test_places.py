@@ -80,12 +80,14 @@ STATIONS_ON_GROUND = (
     "Shi Zhuang", "Chimney Rock", "San Pedro - Palos Verdes", "Lagerheim", "Bridge Street Fire Sta",
     "Columbia - Airport", "Santa Cruz Pier", "Bent Creek", "Stone Tower Inn", "Wall Springs", "Piermont",
     "Top of the World", "Terrasse-Vaudreuil", "Remblai", "Damm", "Terrace", "Quinto", "Segundo Ruiz Belvis", "San Pietro 2",
-    "Cortina d'Ampezzo", "Losa del Obispo", "Somewhere FS28", "Pier 3 Street", "7-story hotel", "Edificio de 7 pisos",
+    "Cortina d'Ampezzo", "Losa del Obispo", "Somewhere FS28", "Pier 3 Street", "Corona - I15 Bridge",
+    "Anchorage - Port Bridge", "Some Dam, Tower Road", "Bridge, ground near tower", "7-story hotel", "Edificio de 7 pisos",
 )
 STATIONS_ON_STRUCTURES = (
     "Madeup Dam L Abut", "Madeup Dam - Southwest Abutment", "Dam (crest)", "Dam, Crest", "ELAZIG KEBAN (KRET-CREST)",
     "TORRE (ROOF)", "Bldg, 7th floor", "Some Bridge - Deck", "Meloland Overpass (Embankment)", "Overpass - Pile Cap",
     "Dam - Left Abutment", "Hospital - Penthouse", "Treasure Is. downhole 30 m", "Somewhere, Level 5",
+    "Bay Bridge - East tower", "Staumauer Krone", "Golden Gate Bridge, south anchorage", "Universidad, pozo 100 m",
     "Bay Bridge, pier 3", "Viadotto, base pila 7", "Bridge - Bent B3", "Tower no. 2", "Presa, berma", "Dam, berms",
     "Hotel; 5th Fl", "Overpass, Footing", "Base of Column, Overpass", "Dam (right crest)",
 )

@@ -89,6 +89,11 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "ru": "опора, опоры, опоре, колонна, колонны, колонне, балка, балки, балке, башня, башни, стена, стены, гребень",
         "nl ko fa hu": "dak, pijler*, kolom, kolommen, ligger*, toren, kruin, 기둥, ستون, برج, teto",
     },
+    "whole structure": {  # behind its name, the words above place a sensor
+        "en": "bridge, overpass, overcrossing, viaduct, dam, levee",
+        "es pt fr it": "puente, presa, viaducto, ponte, barragem, viaduto, pont, barrage, viaduc, diga, viadotto",
+        "de tr": "bruecke, brucke, talbruecke, talbrucke, talsperre, staumauer, kopru*, baraj*, viyaduk*",
+    },
     "borehole": {
         "en": "borehole*, bore hole, downhole*, down hole, dwnhl, dwnh, dhole, dh, bh, drillhole, drill hole, underground",
         "es pt": "sondeo*, perforacion*, sondagem, furo de sondagem, subterraneo",
@@ -140,6 +145,7 @@ _ORDINALS = (
     "ikinci ucuncu dorduncu besinci altinci yedinci sekizinci dokuzuncu onuncu ust δευτεροσ τριτοσ τεταρτοσ πεμπτοσ "
     "второи третии четвертыи пятыи шестои последнии tweede derde vierde vijfde bovenste دوم سوم چهارم پنجم"
 )
+_NUMBERED = re.compile(r"[ .#-]*(?:no[. ]*)?[a-z]?-?\d+\b")
 _IN_CHINESE = r"(?<!下)(?<!地)[二三四五六七八九十]+"  # floors; below the ground they begin with 地下
 _CARDINAL = re.compile(r"\b(?:north|south|east|west|n|s|e|w|nw|ne|sw|se|northwest|northeast|southwest|southeast)\b")
 _IN_BRACKETS = re.compile(r"\(([^()]+)\)")
@@ -225,8 +231,8 @@ def _is_on_structure(text: str, is_name: bool) -> bool:
     """Return whether a folded text places a sensor on a structure, or above the ground floor; False if it says free field."""
     if _pattern("free field").search(text):
         return False
-    parts = _parts_of_names() if is_name else _pattern("structure", "structure, in places only")
-    first = next((m for m in parts.finditer(text) if not _is_street(text, m.end(), is_name)), None)
+    words = _pattern("structure", "structure, in places only").finditer(text)
+    first = next((word for word in words if _places_sensor(text, word, is_name)), None)
     if first is not None and not _is_beside(text[: first.start()]):
         return True
     if not is_name and re.search(rf"{_LENGTH} above\b", text):
@@ -234,11 +240,14 @@ def _is_on_structure(text: str, is_name: bool) -> bool:
     return _upper_floor().search(text) is not None
 
 
-@lru_cache(maxsize=1)
-def _parts_of_names() -> re.Pattern[str]:
-    """Return a pattern of the words for structures in stations' names; words of places only with a number: "pier 3"."""
-    numbered = _pattern("structure, in places only").pattern
-    return re.compile(rf"{_pattern('structure').pattern}|(?:{numbered})[ .#-]*(?:no[. ]*)?[a-z]?-?\d+\b")
+def _places_sensor(text: str, word: re.Match[str], is_name: bool) -> bool:
+    """Return whether a structure's word in a folded text places a sensor, and is no name of a street or a town."""
+    number = _NUMBERED.match(text, word.end())
+    if _is_street(text, (number or word).end(), is_name):
+        return False
+    if not is_name or number or _pattern("structure").fullmatch(word[0]):
+        return True
+    return _pattern("whole structure").search(text[: word.start()]) is not None
 
 
 def _is_beside(before: str) -> bool:
@@ -277,6 +286,10 @@ def _is_below(text: str, is_name: bool) -> bool:
         return False
     kinds = ("borehole",) if is_name else ("borehole", "borehole, in places only")
     if any(not _is_street(text, match.end(), is_name) for match in _pattern(*kinds).finditer(text)):
+        return True
+    if any(
+        re.match(rf"[ ,#-]*{_LENGTH}", text[m.end() :]) for m in _pattern("borehole, in places only").finditer(text)
+    ):
         return True
     return any(depth > _LEAST_DEPTH for depth in _depths(text, is_name))
 
