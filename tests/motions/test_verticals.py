@@ -38,6 +38,22 @@ def test_an_end_that_all_names_of_a_set_share_is_no_direction(tmp_path, directio
     assert {motion.source: motion.azimuth for motion in found.motions} == azimuths
 
 
+@pytest.mark.parametrize(
+    ("names", "upright"),
+    [
+        (("TAKN", "TAKE", "TAKZ"), 2),
+        (("eq1_TAKL", "eq1_TAKT", "eq1_TAKV"), 2),
+        (("TAK032", "TAK122", "TAKV"), 2),
+        (("DAN", "DAV", "KOV"), 0),  # words, of which any letter may be the last
+        (("TAK032", "TAK122", "KOBV"), 0),
+    ],
+)
+def test_an_end_glued_to_the_station_is_a_direction_among_three_with_a_vertical(tmp_path, names, upright):
+    for seed, name in enumerate(names):
+        write_at2(tmp_path, f"{name}.AT2", wiggle(seed=seed), title="nothing said")
+    assert [motion.vertical_source for motion in read_motions(tmp_path).motions].count(f"{names[2]}.AT2") == upright
+
+
 def test_two_numbered_names_beside_a_vertical_are_horizontal(tmp_path):
     write_three(tmp_path, ["x.HN1", "x.HN2", "x.HNZ"])
     assert [motion.vertical_source for motion in read_motions(tmp_path).motions] == ["x.HNZ.AT2"] * 2
