@@ -57,6 +57,8 @@ _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 _MANY = 200  # files; fewer take no time worth a bar
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+ManifestSequences = Sequence[tuple[str, ShockSequence]]
+"""Sequences, each after the path of its manifest."""
 
 
 class _Name(NamedTuple):
@@ -145,6 +147,35 @@ def read_motions(
     CHAN15 0.01 3.05
     CHAN24 0.01 2.93
     """
+    records, sequences = read_records(
+        paths,
+        vertical=vertical,
+        gravity=gravity,
+        options=options,
+        fema=fema,
+        offset=offset,
+        azimuths=azimuths,
+        confirmed=confirmed,
+        confirmed_pga=confirmed_pga,
+        leave_out=leave_out,
+    )
+    return with_manifest_sequences(records, sequences)
+
+
+def read_records(
+    paths: Paths,
+    *,
+    vertical: bool | Literal["required"],
+    gravity: float,
+    options: ReadOptions | None,
+    fema: Sequence[tuple[str, float]],
+    offset: Offset | None,
+    azimuths: Sequence[float],
+    confirmed: Sequence[str],
+    confirmed_pga: Sequence[str],
+    leave_out: Sequence[str],
+) -> tuple[MotionSet, ManifestSequences]:
+    """Return the motions that :func:`read_motions` would, before they are joined, and the sequences of manifests."""
     roots = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
     packaged = _package_components(roots, fema, gravity)
     readings, _, sequences = read_files(roots, options=options, gravity=gravity, offset=offset)
@@ -162,6 +193,11 @@ def read_motions(
     ]
     motions = leaving_out.motions(MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out))
     leaving_out.finish()
+    return motions, sequences
+
+
+def with_manifest_sequences(motions: MotionSet, sequences: ManifestSequences) -> MotionSet:
+    """Return motions with the ``sequences`` of manifests, which replace their records."""
     for manifest, listed in grouped(sequences, lambda pair: pair[0]).items():
         motions = add_sequences(motions, [sequence for _, sequence in listed], source=manifest)[0]
     return motions
@@ -214,7 +250,7 @@ def read_files(
     options: ReadOptions | None = None,
     gravity: float = GRAVITY,
     offset: Offset | None = None,
-) -> tuple[list[Reading], dict[str, Path], list[tuple[str, ShockSequence]]]:
+) -> tuple[list[Reading], dict[str, Path], ManifestSequences]:
     """Return the readings of all files, not yet paired; paths by source; and each sequence of a manifest after its path.
 
     Raises ``InputError`` with every mistake in the manifests; a file that cannot be read is an unusable reading.

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import fields, replace
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
+from rockbatch.motions import Motion, MotionSet, ReadOptions
+from rockbatch.motions.folder import read_records, with_manifest_sequences
 from rockbatch.motions.labels.orientation import same_azimuth
 from rockbatch.motions.quality.baseline import Offset
 from rockbatch.motions.suites.scaling import scale_as_listed, scale_to_targets
@@ -31,7 +32,7 @@ def ground_motions(study: Study) -> MotionSet:
     if isinstance(spec.override, MotionSet):
         records = _as_given(spec.override, spec.vertical)
     else:
-        records = read_motions(
+        records, sequences = read_records(
             spec.paths,
             vertical=spec.vertical,
             gravity=gravity,
@@ -45,6 +46,7 @@ def ground_motions(study: Study) -> MotionSet:
         )
         if azimuths != spec.azimuths:
             records = _without_the_square(records, azimuths)
+        records = with_manifest_sequences(records, sequences)
     pulses = [shape.motion(gravity) for shape in spec.pulses]
     records, pulses = add_sequences(records, spec.sequences, pulses)
     station = {motion.name: motion.of_station for motion in records}
