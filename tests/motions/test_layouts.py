@@ -519,6 +519,12 @@ def test_headers_of_services_and_agencies_state_unit_step_and_count(tmp_path, ki
         ("Azimuth: 12", 12.0, False),
         ("Componente: Vertical", None, True),
         ("Direction: Up", None, True),
+        ("Direção: L-O", 90.0, False),
+        ("DIR: E", 90.0, False),
+        ("Azimuth (deg): 12", 12.0, False),
+        ("方向：NS", 0.0, False),
+        ("Component\tN-S", 0.0, False),
+        ("Компонента: Вертикальная", None, True),
     ],
 )
 @pytest.mark.parametrize("heads", ["time (s), acc (g)", "Acceleration in g"])
@@ -688,7 +694,10 @@ def test_columns_of_a_broadband_platform_have_the_directions_of_their_signs(tmp_
     np.testing.assert_allclose(two.vertical, sign * 9.81 * C, atol=1e-6)
 
 
-@pytest.mark.parametrize("line", ["MUESTREO (Hz): 200", "Muestreo: 200 Hz", "Pas de timp: 0.005 s"])
+@pytest.mark.parametrize(
+    "line",
+    ["MUESTREO (Hz): 200", "Muestreo: 200 Hz", "Pas de timp: 0.005 s", "サンプリング周波数：200 Hz", "采样率: 200 Hz"],
+)
 def test_further_words_state_the_interval(tmp_path, line):
     (tmp_path / "x.txt").write_text(f"{line}\nUnits: g\nN E Z\n{in_columns(A, B, C, between=' ')}", encoding="utf-8")
     assert {motion.dt for motion in read_motions(tmp_path)} == {DT}

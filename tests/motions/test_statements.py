@@ -205,6 +205,7 @@ def test_a_study_states_the_unit_that_one_file_lacks_and_loses_no_other(tmp_path
             "Unit of acceleration: gal",
             "Acceleration / gal",
         ),
+        *("単位：gal", "Units\tgal", "Μονάδα: gal"),
         *("Aceleración en cm/s2", "Beschleunigung in cm/s2", "Accelerations expressed in gal"),
     ],
 )

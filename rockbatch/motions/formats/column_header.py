@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor, length_factor
-from rockbatch.motions.formats.spelled_out import is_down
+from rockbatch.motions.formats.spelled_out import DIRECTION_KEYS, KEYED, is_down
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.labels.direction_words import folded
 from rockbatch.motions.labels.orientation import orientation_in, orientation_of
@@ -27,19 +27,21 @@ _SAMPLE = r"sampl(?:e|es|ing)[ _-]?"
 _INTERVAL = (
     rf"dt|delta ?t|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)|"
     "intervalo? de (?:muestreo|tiempo|amostragem)|paso de tiempo|pas de timp|pas d['e] ?(?:temps|[eé]chantillonnage)|"
-    "passo di campionamento|intervallo di campionamento|abtastintervall|zeitschritt|örnekleme aral[iı]ğ[iı]"
+    "passo di campionamento|intervallo di campionamento|abtastintervall|zeitschritt|örnekleme aral[iı]ğ[iı]|"
+    "采样间隔|サンプリング(?:間隔|周期)"
 )
 _RATE = (
     rf"{_SAMPLE}(?:rate|freq(?:uency)?)|samples[ _-]per[ _-]sec(?:ond)?|sps|(?:frecuencia|tasa) de muestreo|"
     "muestreo(?=[^A-Za-z]*Hz[^A-Za-z]*$)|"
-    "taxa de amostragem|fr[eé]quence d'[eé]chantillonnage|frequenza di campionamento|abtastrate|örnekleme frekans[iı]"
+    "taxa de amostragem|fr[eé]quence d'[eé]chantillonnage|frequenza di campionamento|abtastrate|örnekleme frekans[iı]|"
+    "采样(?:率|频率)|サンプリング(?:周波数|レート)"
 )
 _SPACED = r"(?:equally[ _-])?spaced at|(?:equal|time|sec) intervals? of|at intervals? of"
 _STEP_UNITS = "|".join(re.escape(unit) for unit in sorted((*SECONDS, *_RATE_UNITS), key=len, reverse=True))
 _STEP = re.compile(
     rf"(?<![A-Za-z])(?:(?P<interval>{_INTERVAL}|{_SPACED})|(?P<rate>{_RATE}))(?![A-Za-z])"
     rf"(?:[ _]?(?:[(\[]\s*(?P<before>{_STEP_UNITS})\.?\s*[)\]]|(?P<suffix>s|sec|ms|hz)(?=\s*[:=])))?"
-    r"\s*+[:=]?\s*+(?P<number>[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[ed][-+]?\d+)?)"
+    r"\s*+[:=;]?\s*+(?P<number>[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[ed][-+]?\d+)?)"
     rf"(?:\s*[(\[]?\s*(?P<behind>{_STEP_UNITS})(?![A-Za-z]))?",
     re.IGNORECASE,
 )
@@ -51,11 +53,19 @@ _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>[^()\[\
 _OF_SENSOR = r"(?:sensor|instrument|gau?ge) (?:location|place|position|site)|position"
 _SITES = (
     "(?:recording |station )?(?:station|site|location|place)|sensor|gau?ge|estaci[oó]n|sitio|lugar|ubicaci[oó]n|esta[cç][aã]o|"
-    "stazione|luogo|posizione|lieu|emplacement|istasyon|konum|yer|ort|standort|地点|観測点|設置場所|台站|測站|测点|位置"
+    "stazione|luogo|posizione|lieu|emplacement|istasyon|konum|yer|ort|standort|地点|観測点|設置場所|台站|測站|测点|位置|"
+    "σταθμ[οό]ς|станция"
 )
 _PLACE = re.compile(
-    rf"^(?:(?P<of_sensor>{_OF_SENSOR})|{_SITES})(?: ?(?:name|location|nombre))?\s*[:=：]\s*"
+    rf"^(?:(?P<of_sensor>{_OF_SENSOR})|{_SITES})(?: ?(?:name|location|nombre|名))?\s*[:=;\t]\s*"
     r"(?P<words>.*[^\W\d_]{3,}.*|\S*[^\x00-\x7f].*)$",
+    re.IGNORECASE,
+)
+_STATION = re.compile(rf"^(?:{_SITES})(?: ?(?:name|code|id|no|number|nombre|名)\.?)?\s*[:=;\t]", re.IGNORECASE)
+_EVENT = re.compile(
+    r"^(?:(?:event|earthquake|origin|evento|sismo|terremoto|s[ée]isme|erdbeben|deprem|地震|发震|землетрясение)[^:=;\t]*|"
+    r"(?:start |record(?:ing)? |trigger )?(?:date|time)(?: \w+)?|fecha|hora|datum|uhrzeit|tarih|saat|日時|日付|时间|日期|дата)"
+    r"\s*[:=;\t]",
     re.IGNORECASE,
 )
 _OF_SOIL = re.compile(r"rock\b|\bsoil|water\b|\bvs|\bclass\b", re.IGNORECASE)
@@ -67,14 +77,9 @@ _VALUE = re.compile(
 )  # the last alternative is a keyword of MIDAS or Abaqus
 _KEYED = re.compile(r"[^()\[\],;\t]*[:=]|\*[A-Za-z&-]+ *,")  # "File type: accelerations (g)" is no label
 _COMPONENTS = re.compile(r"^(?:components?|channels?|columns)\s*[:=]\s*(?P<labels>\S.*)$", re.IGNORECASE)
-_DIRECTION = re.compile(
-    r"^(?P<key>comp(?:onent)?|channel|direction|orientation|azimuth|componente|direcci[oó]n|canal|composante|richtung|"
-    r"komponente|bile[sş]en)\.?(?: (?:name|code))?\s*[:=]\s*(?P<label>\S.*?)\s*$",
-    re.IGNORECASE,
-)
 _STATED = re.compile(
-    r"^(?:units?|field[_]unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birimi?|eenheid)"
-    r"\s*[:=]\s*(?:UTC,\s*)?(?P<unit>(?:\d*\.?\d+ )?\S+)",
+    r"^(?:units?|field[_]unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birimi?|eenheid|"
+    r"μονάδ[αε]ς?|единиц[аы]|単位|单位|單位)\s*[:=;\t]\s*(?:UTC,\s*)?(?P<unit>(?:\d*\.?\d+ )?\S+)",
     re.IGNORECASE,
 )
 _ACCELERATION = r"(?:acc|acel|beschl|ivme)\w*\.?"
@@ -338,9 +343,10 @@ def stated_direction(header: Sequence[str]) -> str:
 
     Numbers of components and channels are none.
     """
-    for match in filter(None, map(_DIRECTION.match, header)):
-        label = f"{match['label']} deg" if match["key"].lower() == "azimuth" else match["label"]
-        if orientation_in(label).known:
+    for match in filter(None, map(KEYED.match, header)):
+        key = folded(match["key"]).strip()
+        label = f"{match['label']} deg" if key == "AZIMUTH" else match["label"]
+        if key in DIRECTION_KEYS and orientation_in(label).known:
             return label
     return ""
 
@@ -360,6 +366,13 @@ def stated_place(header: Sequence[str]) -> str | None:
     )
     where, words = stand(place, name)
     return None if where is Stand.GROUND else words
+
+
+def stated_record(header: Sequence[str]) -> str:
+    """Return the lines on station, event and time, a key that the files of one record share; "" without a station."""
+    if not any(map(_STATION.match, header)):
+        return ""
+    return "; ".join(" ".join(line.upper().split()) for line in header if _STATION.match(line) or _EVENT.match(line))
 
 
 def stated_unit(header: Sequence[str]) -> str | None:

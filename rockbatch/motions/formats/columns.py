@@ -30,6 +30,7 @@ from rockbatch.motions.formats.column_header import (
     stated_factor,
     stated_of_samples,
     stated_place,
+    stated_record,
     stated_step,
     stated_unit,
     with_quantities,
@@ -157,6 +158,8 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
     omitted = tuple(f"{_column_name(i, columns[i])} left out: a {columns[i].other}" for i in not_acceleration)
     dt, values, moved = _on_one_step(columns, table, header, options)
     recordings, sensor = [], Sensor(place=stated_place(header))
+    alone = len(used) == 1
+    key = stated_record(header) if alone and split_stem(stem)[1] is None else ""  # else its name tells the record
     for i in used:
         label, orientation = columns[i].label, orientation_in(columns[i].label)
         if orientation.vertical and is_down(header) and not is_upward(label):
@@ -168,9 +171,10 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
             dt=dt,
             values=values[:, i],
             unit=units[i],
+            station=key,
             start=start,
             sensor=sensor,
-            stated=stated_of_samples(header) if len(used) == 1 else (),
+            stated=stated_of_samples(header) if alone else (),
             notes=(*notes, *omitted, *moved, *_remarks_on_sign(orientation, header, stem)),
         )
         recordings.append(recording)

@@ -3,6 +3,17 @@
 import re
 from collections.abc import Sequence
 
+from rockbatch.motions.labels.direction_words import words
+
+KEYED = re.compile(
+    r"^(?P<key>[^\W\d_][^:=;\t]*?)\.?(?: (?:name|code))?(?: ?[(\[]deg(?:rees)?[)\]])?\s*[:=;\t]\s*(?P<label>\S.*?)\s*$",
+    re.IGNORECASE,
+)
+"""Pattern of a header line with a key and what it states."""
+
+DIRECTION_KEYS = words("filling") | {"COMP", "COMPONENT", "CHANNEL", "DIR", "DIRECTION", "ORIENTATION", "AZIMUTH"}
+"""Keys of lines that state a direction, folded."""
+
 _UNIT = r"(?P<unit>\s*[(\[][^()\[\]]*[)\]])?"
 _SIGNED = re.compile(  # behind a label, and perhaps its unit: Up-down (cm/s/s) (+ is downward)
     rf"{_UNIT}\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*"
@@ -18,6 +29,7 @@ _OF_SERVICE = re.compile(  # of EarthScope's time series, in pairs or lists
     r"^TIMESERIES\s+\S+,\s*(?P<npts>\d{1,9}) samples,\s*(?P<rate>[\d.]{1,12}) sps,.*,\s*(?P<unit>[^\s,]+)$",
     re.IGNORECASE,
 )
+_WIDE_SIGNS = str.maketrans("：＝；（）", ":=;()")
 _COUNT_FIRST = re.compile(r"^(?P<npts>\d{1,9})[,\s]+(?P<dt>[\d.]{1,12})[,\s]+NPTS\s*,?\s*DT\b", re.IGNORECASE)
 _VERTICAL_DOWN = re.compile(  # a whole line: others may speak of depth, or of the signs before a conversion
     r"vertical(?: (?:component|axis|acceleration|channel))?\s*(?:[:=]|\bis\b)?\s*(?:positive|pos\.?)(?: is)? ?down(?:wards?)?\.?",
@@ -32,6 +44,7 @@ def spelled_out(line: str) -> list[str]:
     "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down,
     "Column 2: H1 (+ is 35.0)" is 035, and "500 0.01 NPTS DT" a count and a step.
     """
+    line = line.translate(_WIDE_SIGNS)
     if first := _COUNT_FIRST.match(line):
         return [f"NPTS = {first['npts']}, DT = {first['dt']}"]
     if along := _ALONG.match(line):
