@@ -476,7 +476,10 @@ def test_a_letter_v_without_a_and_d_beside_it_is_vertical(tmp_path):
     assert [m.vertical_source for m in found.motions] == ["S052_V.txt"] * 2
 
 
-@pytest.mark.parametrize("heads", ["t a v d", "T A V D", "time acc vel dis", "t acc velocidad desplazamiento"])
+@pytest.mark.parametrize(
+    "heads",
+    ["t a v d", "T A V D", "time acc vel dis", "t acc velocidad desplazamiento", "t(s) a_N(g) v_N(cm/s) d_N(cm)"],
+)
 def test_columns_of_velocity_and_displacement_beside_an_acceleration_are_left_out(tmp_path, heads):
     motion = only(tmp_path, heads + "\n" + in_columns(T, A, B, C, between=" "), unit="g")
     assert is_a(motion)
@@ -524,6 +527,7 @@ def test_headers_of_services_and_agencies_state_unit_step_and_count(tmp_path, ki
         ("Azimuth (deg): 12", 12.0, False),
         ("方向：NS", 0.0, False),
         ("Component\tN-S", 0.0, False),
+        ("Station: ABC, Component: N-S; Recorder: K2", 0.0, False),
         ("Компонента: Вертикальная", None, True),
     ],
 )

@@ -145,6 +145,7 @@ _OTHERS = {
     **dict.fromkeys(_DISPLACEMENT.split(), "displacement"),
 }
 _BY_LETTER = {"A": "acceleration", "V": "velocity", "D": "displacement"}
+_INITIAL = re.compile(r"[VD](?=[-_. ])", re.IGNORECASE)
 _COUNTS = {"count", "counts", "ct", "cts", "v", "mv", "volt", "volts"}
 _OTHER_SERIES = re.compile(
     r"^(?:(?:ground|corrected|uncorrected|relative) )*(?:velocity|displacement)(?: *[(\[][^)\]]*[)\]])?"
@@ -185,7 +186,9 @@ class Column:
 
     @property
     def other(self) -> str:
-        """Return "velocity" or "displacement" if its label says so; empty for others."""
+        """Return "velocity" or "displacement" if its label says so, or its initial and unit, v_N (cm/s); empty for others."""
+        if (initial := _INITIAL.match(self.label)) and _is_of_motion(self.unit or ""):
+            return _BY_LETTER[initial[0].upper()]
         return next((_OTHERS[word] for word in sorted(self._words) if word in _OTHERS), "")
 
     @property

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from rockbatch.motions.labels.direction_words import words
+from rockbatch.motions.labels.direction_words import folded, words
 
 KEYED = re.compile(
     r"^(?P<key>[^\W\d_][^:=;\t]*?)\.?(?: (?:name|code))?(?: ?[(\[]deg(?:rees)?[)\]])?\s*[:=;\t]\s*(?P<label>\S.*?)\s*$",
@@ -29,6 +29,7 @@ _OF_SERVICE = re.compile(  # of EarthScope's time series, in pairs or lists
     r"^TIMESERIES\s+\S+,\s*(?P<npts>\d{1,9}) samples,\s*(?P<rate>[\d.]{1,12}) sps,.*,\s*(?P<unit>[^\s,]+)$",
     re.IGNORECASE,
 )
+_BETWEEN_KEYS = re.compile(r"\s*[,;]\s+|\s{2,}|\t")
 _WIDE_SIGNS = str.maketrans("：＝；（）", ":=;()")
 _COUNT_FIRST = re.compile(r"^(?P<npts>\d{1,9})[,\s]+(?P<dt>[\d.]{1,12})[,\s]+NPTS\s*,?\s*DT\b", re.IGNORECASE)
 _VERTICAL_DOWN = re.compile(  # a whole line: others may speak of depth, or of the signs before a conversion
@@ -42,9 +43,13 @@ def spelled_out(line: str) -> list[str]:
     """Return a header line, and a named line for each property it states without a name; signs in brackets are in its labels.
 
     "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down,
-    "Column 2: H1 (+ is 35.0)" is 035, and "500 0.01 NPTS DT" a count and a step.
+    "Column 2: H1 (+ is 35.0)" is 035, and "500 0.01 NPTS DT" a count and a step. What has a name beside a direction has its line.
     """
     line = line.translate(_WIDE_SIGNS)
+    fields = _BETWEEN_KEYS.split(line)
+    keyed = [match for field in fields if (match := KEYED.match(field))]
+    if 1 < len(keyed) == len(fields) and any(folded(match["key"]).strip() in DIRECTION_KEYS for match in keyed):
+        return fields
     if first := _COUNT_FIRST.match(line):
         return [f"NPTS = {first['npts']}, DT = {first['dt']}"]
     if along := _ALONG.match(line):
