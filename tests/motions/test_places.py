@@ -80,8 +80,9 @@ STATIONS_ON_GROUND = (
     "Shi Zhuang", "Chimney Rock", "San Pedro - Palos Verdes", "Lagerheim", "Bridge Street Fire Sta",
     "Columbia - Airport", "Santa Cruz Pier", "Bent Creek", "Stone Tower Inn", "Wall Springs", "Piermont",
     "Top of the World", "Terrasse-Vaudreuil", "Remblai", "Damm", "Terrace", "Quinto", "Segundo Ruiz Belvis", "San Pietro 2",
-    "Cortina d'Ampezzo", "Losa del Obispo", "Somewhere FS28", "Pier 3 Street", "Corona - I15 Bridge",
-    "Anchorage - Port Bridge", "Some Dam, Tower Road", "Bridge, ground near tower", "7-story hotel", "Edificio de 7 pisos",
+    "Cortina d'Ampezzo", "Losa del Obispo", "Somewhere FS28", "Pier 3 Street", "Corona - I15 Bridge", "RF12",
+    "Puente Alto, Torre", "Anchorage - Port Bridge", "Some Dam, Tower Road", "Bridge, ground near tower", "7-story hotel",
+    "Edificio de 7 pisos",
 )
 STATIONS_ON_STRUCTURES = (
     "Madeup Dam L Abut", "Madeup Dam - Southwest Abutment", "Dam (crest)", "Dam, Crest", "ELAZIG KEBAN (KRET-CREST)",

@@ -91,8 +91,8 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
     },
     "whole structure": {  # behind its name, the words above place a sensor
         "en": "bridge, overpass, overcrossing, viaduct, dam, levee",
-        "es pt fr it": "puente, presa, viaducto, ponte, barragem, viaduto, pont, barrage, viaduc, diga, viadotto",
-        "de tr": "bruecke, brucke, talbruecke, talbrucke, talsperre, staumauer, kopru*, baraj*, viyaduk*",
+        "es pt fr it": "presa, viaducto, barragem, viaduto, barrage, viaduc, diga, viadotto",  # towns begin with Puente and Pont
+        "de tr": "bruecke, brucke, talbruecke, talbrucke, talsperre, staumauer, koprusu, baraj, baraji, viyadugu",
     },
     "borehole": {
         "en": "borehole*, bore hole, downhole*, down hole, dwnhl, dwnh, dhole, dh, bh, drillhole, drill hole, underground",
@@ -145,7 +145,7 @@ _ORDINALS = (
     "ikinci ucuncu dorduncu besinci altinci yedinci sekizinci dokuzuncu onuncu ust δευτεροσ τριτοσ τεταρτοσ πεμπτοσ "
     "второи третии четвертыи пятыи шестои последнии tweede derde vierde vijfde bovenste دوم سوم چهارم پنجم"
 )
-_NUMBERED = re.compile(r"[ .#-]*(?:no[. ]*)?[a-z]?-?\d+\b")
+_NUMBERED = re.compile(r"[ .#-]+(?:no[. ]*)?[a-z]?-?\d+\b")
 _IN_CHINESE = r"(?<!下)(?<!地)[二三四五六七八九十]+"  # floors; below the ground they begin with 地下
 _CARDINAL = re.compile(r"\b(?:north|south|east|west|n|s|e|w|nw|ne|sw|se|northwest|northeast|southwest|southeast)\b")
 _IN_BRACKETS = re.compile(r"\(([^()]+)\)")
