@@ -417,12 +417,10 @@ def test_columns_under_another_suffix_are_asked_to_be_called_text(tmp_path, suff
     assert one(tmp_path, unit="g").npts == len(SHAKEN)
 
 
-@pytest.mark.parametrize("suffix", ["anc", "cor", "th", "asc"])
-def test_a_table_whose_header_states_an_acceleration_is_read_under_any_suffix(tmp_path, suffix):
+@pytest.mark.parametrize("suffix", ["anc", "cor", "th"])
+def test_tables_have_the_suffixes_of_agencies_and_programs(tmp_path, suffix):
     write(tmp_path, "# acceleration (cm/s2)", T, NS, name=f"x_NS.{suffix}")
     assert one(tmp_path).azimuth == 0.0
-    write(tmp_path, "# velocity (cm/s)", T, NS, name=f"x_NS.{suffix}")
-    assert "call it .txt" in reason(tmp_path)
 
 
 def test_what_is_no_table_is_not_asked_to_be_called_text(tmp_path):

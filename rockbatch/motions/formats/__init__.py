@@ -96,12 +96,11 @@ FORMATS = (
     Format("text columns", ".at2 .g3", columns.holds_table, columns.read_columns, anywhere=False),
     Format(
         "text columns",
-        ".txt .csv .dat .bbp .acc .sgs .tsv .inp",
+        ".txt .csv .dat .bbp .acc .sgs .tsv .inp .anc .cor .th",
         columns.is_columns,
         columns.read_columns,
         anywhere=False,
     ),
-    Format("text columns", "", columns.states_acceleration, columns.read_columns),
 )
 """Formats in the order of trial: an AT2 file saved as .txt is AT2, other text is columns, also a table called .AT2."""
 

@@ -67,16 +67,6 @@ def holds_table(head: bytes) -> bool:
         return False
 
 
-def states_acceleration(head: bytes) -> bool:
-    """Return whether the first bytes are a table whose header states a unit of acceleration, whatever the file is called."""
-    try:
-        header, table = read_table(text_of(head.rpartition(b"\n")[0]))
-        units = [stated_unit(header), *(column.unit for column in columns_named(header, table.shape[1]) or ())]
-    except InputError:
-        return False
-    return len(table) > 2 and any(is_acceleration(unit or "") for unit in units)
-
-
 def is_bbp(head: bytes) -> bool:
     """Return whether the first bytes have comments that name exactly time and three accelerations, each with its unit."""
     lines = [line.lstrip("# \t") for line in head.decode("latin-1").splitlines() if line.startswith("#")]
