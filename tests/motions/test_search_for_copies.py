@@ -11,7 +11,8 @@ from motion_files import wiggle, write_at2
 
 from rockbatch.motions import alignment, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.identity import candidates, likeness, stations
+from rockbatch.motions.identity import candidates, likeness
+from rockbatch.motions.identity.planes import in_one_plane
 from rockbatch.motions.labels.orientation import Orientation
 
 
@@ -143,15 +144,35 @@ def test_turned_triples_are_all_rows_in_one_plane_and_take_little_memory():
     least = {three: np.linalg.svd(rows[list(three)])[1][-1] for three in combinations(range(24), 3)}
     planes = {three for three, of_plane in least.items() if of_plane < 1e-6}
     assert len(planes) == 4
-    assert {tuple(sorted(three)) for three in stations._planes(rows)} == planes
+    assert {tuple(sorted(three)) for three in in_one_plane(rows, 1e-4)} == planes
 
     many = rng.normal(size=(4000, 100))
     many /= np.linalg.norm(many, axis=1)[:, None]
     tracemalloc.start()
-    assert list(stations._planes(many)) == []
+    assert list(in_one_plane(many, 1e-4)) == []
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert most < 0.25 * 8 * len(many) ** 2
+
+
+@pytest.mark.parametrize("copies", [0, 14])
+def test_turned_triples_of_rows_that_are_all_close_are_those_of_a_search_by_brute_force(copies):
+    """Records of a narrow band are correlated, and copies of a row have no azimuth about it."""
+    rng = np.random.default_rng(3)
+    rows = np.sin(np.linspace(0.0, 9.0, 60)) + 0.1 * rng.normal(size=(24, 60))
+    rows[5] = 0.6 * rows[1] + 0.3 * rows[2]
+    rows[9] = rows[8] - 0.2 * rows[5]
+    rows[24 - copies :] = rows[0] * rng.choice([-1.0, 1.0], size=(copies, 1))
+    rows /= np.linalg.norm(rows, axis=1)[:, None]
+    lines = rows[: 24 - copies or None]
+    three_lines = [
+        three for three in combinations(range(len(lines)), 3) if np.linalg.svd(rows[list(three)])[1][-1] < 1e-9
+    ]
+    assert len(three_lines) == 2
+    copied = range(len(lines), 24)
+    of_copies = {tuple(sorted((0, a, b))) for a in range(1, len(lines)) for b in copied}
+    of_copies |= {(a, *two) for a in range(1, len(lines)) for two in combinations(copied, 2)}
+    assert {tuple(sorted(three)) for three in in_one_plane(rows, 1e-4)} == {*three_lines, *of_copies}
 
 
 def test_any_two_samples_lie_in_one_plane_and_tell_nothing_of_turned_copies(tmp_path):
@@ -160,7 +181,7 @@ def test_any_two_samples_lie_in_one_plane_and_tell_nothing_of_turned_copies(tmp_
     assert len(read_motions(tmp_path).motions) == 3
 
 
-@pytest.mark.parametrize(("squares", "samples"), [([1.0, 0.0, 0.0, 0.0, 1.0], 4), ([1.0, 0.0, 0.0, 30.0], 0)])
-def test_the_strong_part_of_a_series_is_of_all_its_samples(squares, samples):
+@pytest.mark.parametrize(("squares", "places"), [([1.0, 0.0, 0.0, 0.0, 1.0], (0, 4)), ([1.0, 0.0, 0.0, 30.0], (3, 3))])
+def test_the_strong_part_of_a_series_is_of_all_its_samples(squares, places):
     """Of 1, 1, 1, 1, 2 the sum passes 5 % at the first and 95 % at the last; of 1, 1, 1, 31 both at the last."""
-    assert alignment._strong_samples(np.sqrt(squares)) == samples
+    assert tuple(alignment.places_of_energy(np.sqrt(squares), (0.05, 0.95))) == places

@@ -13,21 +13,15 @@ from datetime import UTC, datetime
 from itertools import combinations, pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.motions.component import Component
 from rockbatch.motions.identity.common_span import overlap
-from rockbatch.motions.motion import Samples
-
-Indices = npt.NDArray[np.int64]
+from rockbatch.motions.identity.planes import in_one_plane
 
 _NUMBERED = re.compile(r"RSN\d+")
 _HOUR = 3600.0  # s
 _SAME_SHAPE = 1e-4  # of the peak: rounding of a sample in a printed, scaled copy
-_CLOSE = 0.499  # correlation of lines 60° apart, but for rounding
-_ROUNDING = 1e-12  # of coordinates of unit vectors
-_BLOCK = 256  # records that are compared with all others at once
 
 
 def is_numbered(site: str) -> bool:
@@ -249,8 +243,7 @@ def _are_copies(a: Component, b: Component) -> bool:
 def _turned_triples(stations: Sequence[Sequence[Component]]) -> Iterator[tuple[int, int, int]]:
     """Yield the indices of three stations, not all equal, whose horizontals are one pair rotated to three directions.
 
-    One of three such components is a combination of the others. Two of three lines in a plane are 60° apart at most, and so
-    their samples have a correlation of a half or more.
+    One of three such components is a combination of the others.
     """
     members = [(i, c) for i, station in enumerate(stations) for c in station]
     horizontals = [(i, c) for i, c in members if not c.orientation.vertical and c.pga]
@@ -258,39 +251,7 @@ def _turned_triples(stations: Sequence[Sequence[Component]]) -> Iterator[tuple[i
         if len({i for i, _ in alike}) < 2 or len(alike) < 3 or len(alike[0][1].acceleration) < 3:
             continue  # any two samples lie in one plane
         samples = np.array([c.acceleration / np.linalg.norm(c.acceleration) for _, c in alike])
-        for triple in _planes(samples):
+        for triple in in_one_plane(samples, _SAME_SHAPE):
             of_station = [alike[row][0] for row in triple]
             if len({*of_station}) > 1:
                 yield of_station[0], of_station[1], of_station[2]
-
-
-def _planes(samples: Samples) -> Iterator[tuple[int, int, int]]:
-    """Yield three rows of unit ``samples`` that lie in one plane, but for rounding.
-
-    What lies in a plane lies in its projection, and is no farther from it: three coordinates of an orthonormal projection rule
-    nearly all other rows out.
-    """
-    projected = samples @ np.linalg.qr(np.random.default_rng(0).normal(size=(samples.shape[1], 3)))[0]
-    for a, b in _close_lines(samples):
-        g = np.einsum("ij,ij->i", samples[a], samples[b])
-        a, b, g = (values[np.abs(g) < 1.0 - _SAME_SHAPE] for values in (a, b, g))
-        normal, off_plane = np.cross(projected[a], projected[b]), _SAME_SHAPE / np.sqrt(1.0 - g**2)
-        within = off_plane * np.linalg.norm(normal, axis=1) + _ROUNDING
-        for i, (first, second) in enumerate(zip(a.tolist(), b.tolist(), strict=True)):
-            near = np.flatnonzero(np.abs(projected @ normal[i]) <= within[i])
-            cosines = samples[near] @ samples[[first, second]].T
-            in_plane = (np.square(cosines).sum(axis=1) - 2.0 * g[i] * cosines.prod(axis=1)) / (1.0 - g[i] ** 2)
-            others = near[in_plane > 1.0 - off_plane[i] ** 2].tolist()
-            yield from ((first, second, third) for third in others if third not in (first, second))
-
-
-def _close_lines(samples: Samples) -> Iterator[tuple[Indices, Indices]]:
-    """Yield rows a and rows b > a of unit ``samples`` whose correlation is about a half or more, of either sign, shape (k,) each.
-
-    A block of rows a at a time, so that memory does not grow with the square of their number.
-    """
-    rounded = samples.astype(np.float32)
-    for first in range(0, len(rounded), _BLOCK):
-        cosines = rounded[first : first + _BLOCK] @ rounded[first:].T
-        a, b = np.nonzero(np.triu(np.abs(cosines) >= _CLOSE, 1))
-        yield first + a, first + b
