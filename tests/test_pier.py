@@ -84,11 +84,6 @@ def test_rectangle_has_the_inertia_of_a_rectangle():
     assert (2 * pier.half_width, 2 * pier.height) == pytest.approx((2.0, 9.0), rel=1e-14)
 
 
-def test_the_mass_follows_width_and_height_with_a_deck_and_without():
-    assert Pier.rectangle(8.0, 30.0, 2000.0).mass_t == 2000.0
-    assert Pier.with_deck(8.0, 30.0, 2000.0, 1000.0).mass_t == 3000.0
-
-
 @pytest.mark.parametrize("alpha", [0.05, 0.2, 0.9])
 def test_least_beta_is_where_the_static_pier_loses_its_stiffness(alpha):
     """g h = ω_v² b²; and the core agrees: just above it a nudge is borne, however softly, just below it topples."""

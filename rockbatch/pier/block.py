@@ -132,9 +132,9 @@ class Pier(InNotebook):
         cls,
         width_m: float,
         height_m: float,
-        mass_t: float | None = None,
-        *,
         gravity: float = GRAVITY,
+        *,
+        mass_t: float | None = None,
         top_m: float | None = None,
         confirm: Collection[str] = (),
     ) -> "Pier":

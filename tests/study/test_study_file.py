@@ -133,7 +133,7 @@ source = "S"
     ("keys", "pier"),
     [
         ("alpha = 0.2\nsize_m = 7.3575", Pier.from_size(0.2, 7.3575)),
-        ("width_m = 4\nheight_m = 30\ngravity = 9.8", Pier.rectangle(4.0, 30.0, gravity=9.8)),
+        ("width_m = 4\nheight_m = 30\ngravity = 9.8", Pier.rectangle(4.0, 30.0, 9.8)),
     ],
 )
 def test_a_pier_is_given_by_p_or_size_or_as_a_rectangle(tmp_path, keys, pier):
