@@ -10,7 +10,6 @@ from importlib import import_module
 from unittest import mock
 
 import pytest
-from figures_on_axes import check_every_figure
 from short_pages import pages, short_pages
 
 from rockbatch.common.garbage import collect_rarely
@@ -23,7 +22,6 @@ from rockbatch.simulation import kept
 __all__ = ["pages", "short_pages"]
 
 collect_rarely()
-check_every_figure()
 with suppress(OSError):  # of no home
     os.environ["ROCKBATCH_CACHE"] = str(kept.folder())  # commands that tests run elsewhere, as other users, find it too
 

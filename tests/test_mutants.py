@@ -169,24 +169,19 @@ def test_an_error_in_a_constant_meets_first_the_tests_that_name_it(tmp_path):
     from recording import Record
     from run import Place, tests_of
 
-    seconds = {
-        "tests/test_a.py::test_other": 0.1,
-        "tests/test_b.py::test_long": 2.0,
-        "tests/test_b.py::test_short": 0.2,
-    }
-    (tmp_path / "tests").mkdir()
-    (tmp_path / "tests" / "test_a.py").write_text("MOST_STEPS_RECORDED, STEPS\n")
-    (tmp_path / "tests" / "test_b.py").write_text('"{MOST_STEPS}"\n')
+    files = [tmp_path / "tests" / f"test_{name}.py" for name in "ab"]
+    files[0].parent.mkdir()
+    files[0].write_text("MOST_STEPS_RECORDED, STEPS\n")
+    files[1].write_text('"{MOST_STEPS}"\n')
+    a, b = (file.relative_to(tmp_path).as_posix() for file in files)
     record = Record.__new__(Record)
-    record.top, record.seconds = tmp_path, seconds
-    record.tests_of, record.nearest = lambda file, lines: [], lambda file, count: ["tests/test_a.py::test_other"]
+    record.top, record.seconds = tmp_path, {f"{a}::test_other": 0.1, f"{b}::test_long": 2.0, f"{b}::test_short": 0.2}
+    record.tests_of, record.nearest = lambda file, lines: [], lambda file, count: [f"{a}::test_other"]
     file = "rockbatch/motions/limits.py"
     source = (TOOL.parents[1] / file).read_text(encoding="utf-8")
     met = {str(error): tests_of(Place(file, error), record, 9.0)[0] for error in mutants(source)}
-    assert met["20 → (21)"] == [
-        f"tests/test_{name}" for name in ("b.py::test_short", "b.py::test_long", "a.py::test_other")
-    ]
-    assert met["0.01 → (0.011000000000000001)"] == ["tests/test_a.py::test_other"]
+    assert met["20 → (21)"] == [f"{b}::test_short", f"{b}::test_long", f"{a}::test_other"]
+    assert met["0.01 → (0.011000000000000001)"] == [f"{a}::test_other"]
 
 
 @pytest.mark.thorough

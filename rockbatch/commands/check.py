@@ -55,7 +55,10 @@ def main(arguments: argparse.Namespace) -> int:
         say(str(write_report(arguments.directory, saved=saved)))
     study = saved.info["study"]
     edited = [file["path"] for file in (study, *study.get("checks", ())) if not _is_as_run(file)]
-    if edited and arguments.rules is None:
+    started_here = arguments.directory.resolve().is_relative_to(
+        Path.cwd()
+    )  # as far as can be told, to read relative paths
+    if edited and arguments.rules is None and started_here:
         again = shlex.join(["rockbatch", "run", study["path"], "--out", str(arguments.directory)])
         say(f"{', '.join(edited)}: edited since the run, whose limits these are; {again} applies the new ones")
     return code

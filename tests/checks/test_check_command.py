@@ -81,6 +81,11 @@ def test_a_study_edited_since_its_run_is_named_with_the_command_that_applies_it(
         assert ("edited" in said) == bool(told)
         assert main(["check", "out", "--rules", "pier.toml"]) == bool(told)
         assert "edited" not in capsys.readouterr().err
+    (tmp_path / "other").mkdir()
+    monkeypatch.chdir(tmp_path / "other")  # with a study of its own, of the same name
+    Path("pier.toml").write_text(MARGIN.replace("0.5", "0.2"), encoding="utf-8")
+    assert main(["check", "../out"]) == 0
+    assert "edited" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

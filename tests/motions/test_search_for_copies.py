@@ -156,7 +156,7 @@ def test_turned_triples_are_all_rows_in_one_plane_and_take_little_memory():
 
 
 @pytest.mark.parametrize("copies", [0, 14])
-def test_turned_triples_of_rows_that_are_all_close_are_those_of_a_search_by_brute_force(copies):
+def test_turned_triples_of_close_rows_are_those_of_a_brute_force_search(copies):
     """Records of a narrow band are correlated, and copies of a row have no azimuth about it."""
     rng = np.random.default_rng(3)
     rows = np.sin(np.linspace(0.0, 9.0, 60)) + 0.1 * rng.normal(size=(24, 60))

@@ -12,12 +12,16 @@ from rockbatch.reporting.table import Head, alarm, table
 
 
 def of_cases(finished: Finished, shown: list[Quantity], name: str) -> Markup:
-    """Return a table with a row for each case with devices, pier and scale: the worst of its runs, column by column."""
+    """Return a table with a row for each case, pier and scale: the worst of its runs, column by column.
+
+    Cases without devices have no row if all that is ``shown`` is of devices.
+    """
     rows: list[list[object]] = []
+    of_devices = all(column.device for column in shown)
     for words, group in finished.groups():
         for place in group["series"].unique():
             runs, label = group[group["series"] == place], finished.series[int(place)].label
-            if not devices(finished.cases[int(place), int(runs["pier"].iloc[0])]):
+            if of_devices and not devices(finished.cases[int(place), int(runs["pier"].iloc[0])]):
                 continue
             ended = int(runs["status"].isin(CUT_SHORT).sum())
             counts = f"{len(runs) - ended} of {len(runs)}"
