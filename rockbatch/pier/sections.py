@@ -129,11 +129,14 @@ def _above_section(parts: Sequence[Part], height: float, rounding: float) -> Abo
 
 
 def share_above(part: Part, height: float, rounding: float) -> float:
-    """Return the share of a part above ``height`` [m], 0 to 1; a point mass at most ``rounding`` [m] below counts as above."""
+    """Return the share of a part above ``height`` [m], 0 to 1.
+
+    A point mass at most ``rounding`` [m] below counts as above, and the end of a shaft at most that far above does not.
+    """
     length, rise = part.length_m or 0.0, part.height_m - height
     if length == 0.0:
         return 1.0 if rise >= -rounding else 0.0
-    return min(max(0.5 + rise / length, 0.0), 1.0)
+    return min(0.5 + rise / length, 1.0) if rise + 0.5 * length > rounding else 0.0
 
 
 def _piece(part: Part, height: float, rounding: float) -> Above:

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 from check_samples import ELASTIC, PADS, PIER, RIGID, SECTION, case, in_sections, interaction_of, judged, runs
 
+import rockbatch as rb
 from rockbatch.checks import Rule, judge
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, FootingBase, RigidBase, Stop, Tendon, YieldingBase
@@ -300,6 +301,19 @@ def test_a_check_of_a_section_with_nothing_above_it_does_not_apply():
                 [Rule("check", demand, 1e6, **place)], table, [case(base=replace(PADS, zeta=0.05))], sections=sections
             )
             assert (found.verdict, found.note if note else "") == (verdict, note)
+
+
+@pytest.mark.parametrize(("width", "height"), [(4.0, 24.0), (4.0, 30.0), (5.0, 30.0)])
+def test_nothing_is_above_the_top_of_a_pier_whatever_its_height_rounds_to(tmp_path, width, height):
+    """Twice the half height of 4 × 30 m is 4e-15 m more than 30 m."""
+    motion = rb.pulse("sine", name="pulse", amplitude=4.0, period=1.0, dt=0.01, duration=3.0)
+    shaft = {"width_m": width, "height_m": height, "mass_t": 800.0}
+    top = {"name": "top", "demand": "section_axial_kN", "at_m": height, "at_most": 1.0, "reason": "drawing 12"}
+    tables = {"title": "top", "pier": shaft, "case": [{"name": "rock", "base": "rigid"}], "output": {"forces": True}}
+    tables["output"] |= {"sections_m": [0.0, height]}
+    rb.run(rb.Study.from_dict(tables | {"check": [top]}, motions=[motion]), out=tmp_path / "out")
+    (found,) = rb.check(tmp_path / "out").to_dict("records")
+    assert (found["verdict"], found["note"]) == ("does not apply", f"nothing of the pier is above {height:g} m")
 
 
 @pytest.mark.parametrize(
