@@ -29,6 +29,7 @@ PARTS = {
     "check": '[[check]]\nname = "uplift"\ndemand = "heel_uplift_m"\nat_most = 0.1\nreason = "keys"\n',
 }
 THETA = ('demand = "heel_uplift_m"\nat_most = 0.1', 'demand = "theta_max_over_alpha"\nat_most = 50')
+DAMPER = '[[case.damper]]\nkind = "friction"\nforce_kN = 500\n'  # of the case above the check
 FOUND = [  # part, what stands there, what shall, its key, and what is said
     ("pier", "mass_t = 3000", "mass_t = 3000\ntop_m = 31500", "top_m", "[pier]: top_m = 31500: more than 400 m"),
     ("pier", "mass_t = 3000", "mass_t = 2e3\ndeck_mass_t = 2e6", "deck_mass_t", "[pier]: deck_mass_t = 2e+06: more than"),
@@ -67,7 +68,8 @@ FOUND = [  # part, what stands there, what shall, its key, and what is said
     ("check", THETA[0], 'demand = "heel_uplift_mm"\nat_most = 0.15', "at_most",
      '[[check]] "uplift": at_most = 0.15: in mm, as heel_uplift_mm is, hardly more than nothing; 0.15 m are 150 mm'),
     ("check", THETA[0], 'demand = "top_drift_mm"\nat_most = 1.2', "at_most", '[[check]] "uplift": at_most = 1.2: in mm, as'),
-    ("check", THETA[0], 'demand = "damper_stroke_m"\nat_most = 60', "at_most",
+    ("check", f'[[check]]\nname = "uplift"\n{THETA[0]}',
+     f'{DAMPER}[[check]]\nname = "uplift"\ndemand = "damper_stroke_m"\nat_most = 60', "at_most",
      '[[check]] "uplift": at_most = 60: damper_stroke_m above 4 is more than the pier is wide'),
 ]  # fmt: skip
 

@@ -44,6 +44,7 @@ def leaves(value, place=""):
         yield from leaves(item, at) if tables else [(at, item)]
 
 
-def test_the_paths_of_a_study_are_those_of_its_keys():
-    expected = {"pier.width_m", "pier.part.mass_t", "case.name", "case.beta", "case.damper.kind", "case.damper.f"}
-    assert {*paths_in(TABLES)} == expected | {"case.damper.nu", "case.base", "case.tendon.psi"}
+def test_the_paths_of_a_study_are_those_of_its_keys_with_numbers():
+    """Those of words, such as case.name, are not among them: a scan varies numbers."""
+    of_pier, of_devices = {"pier.width_m", "pier.part.mass_t"}, {"case.damper.f", "case.damper.nu", "case.tendon.psi"}
+    assert {*paths_in(TABLES)} == of_pier | of_devices | {"case.beta"}
