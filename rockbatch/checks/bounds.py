@@ -44,8 +44,8 @@ class Demanded(NamedTuple):
 
     ``bounds`` of every run, and whether it is ``counting`` at all; the ``own`` demand by the model of the case, and
     ``by_other`` that by the other one of a range, NaN if that did not go through and None if it was not run; ``chaotic`` runs;
-    and what the demand leaves out in runs that count (``omitted``), by the names of
-    :data:`rockbatch.checks.omissions.OMISSIONS`.
+    what the demand leaves out in runs that count (``omitted``), by the names of
+    :data:`rockbatch.checks.omissions.OMISSIONS`; and runs that have no upper bound for it (``unbounded``).
     """
 
     bounds: Bounds
@@ -54,6 +54,7 @@ class Demanded(NamedTuple):
     by_other: Values | None
     chaotic: npt.NDArray[np.bool_]
     omitted: list[str]
+    unbounded: npt.NDArray[np.bool_]
 
 
 class OfSuite(NamedTuple):
@@ -188,7 +189,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
             open_ |= (status == "failed") | (status == "flight")
         bounds = Bounds(value, value, np.where(open_, 1.0, value), False)
         none = np.zeros(len(runs), dtype=bool)
-        return Demanded(bounds, counting, own, None, none, omissions(demand, runs, error, case))
+        return Demanded(bounds, counting, own, None, none, omissions(demand, runs, error, case), none)
 
     at_least = np.isinf(error)  # the value is a lower bound, and nothing bounds it from above
     margin, wild = np.where(at_least, 0.0, np.nan_to_num(error)), _chaotic(demand, runs, error)
@@ -203,7 +204,8 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":
         high = np.where(runs.facts("may_overturn"), np.inf, high)
-    unknown = at_least | ((open_landings(demand, runs, case) | open_ends(demand, runs)) & np.isfinite(value))
+    lower = (open_landings(demand, runs, case) | open_ends(demand, runs)) & np.isfinite(value)
+    unknown = at_least | lower
     for name, way in rule.ways.items():
         ended = status == name
         if way == "infinite":
@@ -225,7 +227,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
     free = unconverged(demand, error, case)
     low, high = np.where(free & np.isfinite(low), 0.0, low), np.where(free, np.inf, high)
     omitted = omissions(demand, runs.where(counting), error[counting], case)
-    return Demanded(Bounds(value, low, high, estimated), counting, own, by_other, wild, omitted)
+    return Demanded(Bounds(value, low, high, estimated), counting, own, by_other, wild, omitted, lower | free)
 
 
 def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:

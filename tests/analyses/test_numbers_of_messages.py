@@ -287,7 +287,7 @@ SPECTRUM = {
 
 def curve(case, median, **more):
     """Return a curve as fragility.json has it."""
-    undecided = {"runs": 60, "flight": 4, "failed": 3, "other": 2}
+    undecided = {"runs": 60, "flight": 4, "failed": 3, "other": 1, "lower": 1}
     return {"case": case, "columns": {}, "median": median, "says_little": False, "undecided": undecided, "points": [],
             "median_undecided": None, "stations": 17, "piers": 1, "capacities": []} | more  # fmt: skip
 
@@ -321,6 +321,10 @@ FRAGILITY |= {
     ),
     "undecided runs": (lambda: fragility._left_open(ABOUT, curve("a", None), []), [9.0, 60.0, "runs"]),
     "kinds of undecided runs": (lambda: UNDECIDED.words, [17.0, 400.0, "runs", 10.0, "flew", 2.0, "failed", 5.0]),
+    "runs left open by what a demand leaves out": (
+        lambda: Undecided(400, 10, 0, 0, 7, "impulses are left out").words,
+        [17.0, 400.0, "runs", 10.0, "flew", 7.0, "below the limit", "impulses are left out"],
+    ),
     "undecided runs that change nothing": (
         lambda: _about_undecided(SimpleNamespace(undecided=UNDECIDED, readings=None)),
         [17.0, 400.0, "runs", 10.0, 2.0, 5.0, "nothing"],

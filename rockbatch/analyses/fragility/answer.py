@@ -124,7 +124,7 @@ def _never(curve: Curve) -> bool:
 
 def _left_open(info: Info, curve: Curve, curves: Sequence[Curve]) -> Iterator[str]:
     """Yield doubts about ``curve``, the lowest of ``curves``: undecided runs, extrapolation, a case that may be weaker."""
-    undecided = sum(curve["undecided"][kind] for kind in ("flight", "failed", "other"))
+    undecided = sum(curve["undecided"][kind] for kind in ("flight", "failed", "other", "lower"))
     runs = f"{undecided} of {counted(curve['undecided']['runs'], 'run')}"
     if curve["says_little"]:
         bounds = _bounds(curve["median_undecided"])

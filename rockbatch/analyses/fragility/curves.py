@@ -51,23 +51,30 @@ class Undecided(NamedTuple):
     """Runs of a curve that are on an unknown side of the limit, because they flew, failed, or for another reason.
 
     ``runs`` is the number of all runs of the curve; ``other`` are within their error of the limit, or overturned where the
-    check counts that as unknown.
+    check counts that as unknown; ``lower`` have only a lower bound, for what the demand leaves out (``remark``).
     """
 
     runs: int
     flight: int
     failed: int
     other: int
+    lower: int = 0
+    remark: str = ""
 
     @property
     def number(self) -> int:
         """Return the total number of undecided runs."""
-        return self.flight + self.failed + self.other
+        return self.flight + self.failed + self.other + self.lower
 
     @property
     def words(self) -> str:
         """Return "12 of 400 runs undecided: 10 flew, 2 failed"; empty if there are none."""
-        kinds = {"flew": self.flight, "failed": self.failed, "too near to the limit, or counted as unknown": self.other}
+        kinds = {
+            "flew": self.flight,
+            "failed": self.failed,
+            "too near to the limit, or counted as unknown": self.other,
+            f"below the limit by what is computed ({self.remark})": self.lower,
+        }
         parts = ", ".join(f"{number} {kind}" for kind, number in kinds.items() if number)
         return f"{self.number} of {count(self.runs, 'run')} undecided: {parts}" if parts else ""
 
@@ -243,7 +250,14 @@ def _curve(
     It has the windows, if the base of the first case has some, and the contribution of drawn inputs.
     """
     on_levels = np.array([[states.get(x, LEFT_OUT) for x in spec.levels] for states in looks], dtype=np.int8)
-    undecided, station = _undecided(runs, members, looks), _stations(runs, members)
+    counted = [
+        (Point(m, runs.plans[c].used[m].get(x, x), c), state)
+        for (c, m), of_record in zip(members, looks, strict=True)
+        for x, state in of_record.items()
+        if state != LEFT_OUT
+    ]
+    undecided = _undecided(runs, rule, len(counted), [point for point, state in counted if state == UNDECIDED])
+    station = _stations(runs, members)
     capacities: tuple[tuple[Member, Capacity], ...] = ()
     if spec.method == "ida":
         found = [capacity(states, spec.levels) for states in looks]
@@ -319,9 +333,7 @@ def _of_cloud(runs: RecordRuns, spec: FragilitySpec, numbers: Sequence[int], rul
     )
     counting = [run for run in cloud_points if run.state != LEFT_OUT]
     doubtful = [run for run in counting if _is_doubtful(run)]
-    ended = Counter(run.status for run in doubtful)
-    not_converged = len(doubtful) - ended["flight"] - ended["failed"]
-    undecided = Undecided(len(counting), ended["flight"], ended["failed"], not_converged)
+    undecided = _undecided(runs, rule, len(counting), [Point(run.motion, run.intensity, run.case) for run in doubtful])
 
     def through(points: Sequence[CloudPoint]) -> Fitted | NoCurve:
         return _through_cloud(points, rule, spec, runs.clusters.of_motion)
@@ -367,11 +379,12 @@ def _through_cloud(points: Sequence[CloudPoint], rule: Rule, spec: FragilitySpec
     return cloud.fit(runs, limit, spec.censored_below * limit, spec.confidence)
 
 
-def _undecided(runs: RecordRuns, members: Sequence[Member], looks: Sequence[Looks]) -> Undecided:
-    counted = [(c, m, x, state) for (c, m), states in zip(members, looks, strict=True) for x, state in states.items()]
-    status = Counter(runs.status_at(m, x, c) for c, m, x, state in counted if state == UNDECIDED)
-    flight, failed = status.pop("flight", 0), status.pop("failed", 0)
-    return Undecided(sum(state != LEFT_OUT for *_, state in counted), flight, failed, status.total())
+def _undecided(runs: RecordRuns, rule: Rule, counting: int, points: Sequence[Point]) -> Undecided:
+    """Return the undecided runs of a curve, at ``points``, among all that are ``counting``, by what leaves them open."""
+    remarks = [runs.omitted[rule, point] for point in points if (rule, point) in runs.omitted]
+    status = Counter(runs.status[point] for point in points)
+    flight, failed, lower = status.pop("flight", 0), status.pop("failed", 0), len(remarks)
+    return Undecided(counting, flight, failed, status.total() - lower, lower, "; ".join(dict.fromkeys(remarks)))
 
 
 def _stripes(

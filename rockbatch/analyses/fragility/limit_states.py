@@ -5,6 +5,7 @@ import numpy.typing as npt
 
 from rockbatch.analyses.fragility.study import OVERTURNING
 from rockbatch.checks.bounds import of_runs
+from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.rules import Rule
 from rockbatch.common.naming import chosen_by
 from rockbatch.quantities.arrays import Rows
@@ -40,6 +41,13 @@ def words(rule: Rule) -> str:
 def demands(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.float64]:
     """Return the demand of each of the n runs of a case, shape (n,)."""
     return of_runs(rule, runs, case).bounds.value
+
+
+def open_by_omission(rule: Rule, runs: Rows, case: Case) -> tuple[npt.NDArray[np.bool_], str]:
+    """Return which of n runs of a case have no upper bound for what their demand leaves out, shape (n,), and that in words."""
+    demanded = of_runs(rule, runs, case)
+    remarks = [OMISSIONS[name].remark for name in demanded.omitted if not OMISSIONS[name].decides]
+    return demanded.unbounded & (runs.texts("status") == "ok"), "; ".join(remarks)
 
 
 def states(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.int8]:

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.analyses.fragility.clusters import clusters
-from rockbatch.analyses.fragility.limit_states import LEFT_OUT, demands, states
+from rockbatch.analyses.fragility.limit_states import LEFT_OUT, UNDECIDED, demands, open_by_omission, states
 from rockbatch.analyses.fragility.measures import as_they_come
 from rockbatch.analyses.fragility.stripes import members
 from rockbatch.analyses.fragility.study import FragilitySpec
@@ -190,6 +190,7 @@ class RecordRuns:
         self.draws = Draws(spec.uncertain, study.cases, len(motions))
         self.draws_by_level = bool(spec.uncertain.inputs) and spec.method != "ida"
         self.status: dict[Point, str] = {}
+        self.omitted: dict[tuple[Rule, Point], str] = {}
         self._last: tuple[dict[Point, int], Rows]
 
     def execute(self, requested: Iterable[Point]) -> None:
@@ -218,11 +219,18 @@ class RecordRuns:
         return values
 
     def states(self, requested: Sequence[tuple[Rule, Point]]) -> list[int]:
-        """Return the state of each run, all of the last wave, with respect to its limit: LEFT_OUT to EXCEEDED, in this order."""
+        """Return the state of each run, all of the last wave, with respect to its limit: LEFT_OUT to EXCEEDED, in this order.
+
+        Of undecided runs that stand, keep the remark on what their demand leaves out (``omitted``), if that leaves them open.
+        """
         result = np.full(len(requested), LEFT_OUT)
         for rule, numbers in grouped(range(len(requested)), lambda number: requested[number][0]).items():
             for drawn, places, runs in self._together([requested[number][1] for number in numbers]):
-                result[np.array(numbers)[places]] = states(rule, runs, drawn.described)
+                of_case = np.array(numbers)[places]
+                result[of_case] = states(rule, runs, drawn.described)
+                is_open, remark = open_by_omission(rule, runs, drawn.described)
+                is_open &= result[of_case] == UNDECIDED
+                self.omitted |= {requested[number]: remark for number in of_case[is_open]}
         return result.tolist()
 
     def _together(self, points: Sequence[Point]) -> Iterator[tuple[Drawn, list[int], Rows]]:

@@ -28,7 +28,7 @@ def curve(case="rigid", limit="overturning", median=None, exceeded=(0, 2, 6, 9),
         "case": case, "columns": {}, "limit_state": limit, "words": "" if limit == "overturning" else "theta > 1",
         "median": median, "median_interval": interval or (median and [0.8 * median, 1.3 * median]), "points": points,
         "dispersion": median and 0.4, "no_curve": None, "median_undecided": None, "says_little": False, "risk": None,
-        "capacities": [], "undecided": {"runs": 40, "flight": 0, "failed": sum(undecided), "other": 0},
+        "capacities": [], "undecided": {"runs": 40, "flight": 0, "failed": sum(undecided), "other": 0, "lower": 0},
     } | more  # fmt: skip
 
 

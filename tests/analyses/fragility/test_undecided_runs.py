@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fragility_samples import IDA, STRIPES, made_up, of_statuses, stands_or_falls, written
+from fragility_samples import IDA, STRIPES, check, made_up, of_statuses, stands_or_falls, written
+from studies import SINE
 
+import rockbatch as rb
 from rockbatch.analyses.fragility.bounds import NoCurve
 from rockbatch.analyses.fragility.command import table
 from rockbatch.analyses.fragility.curves import Readings
@@ -136,6 +138,32 @@ def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
     ):
         np.testing.assert_array_equal(readings.probability(x), expected)
     assert Readings(NoCurve("none"), beyond).medians == (0.0, beyond.median)
+
+
+@pytest.mark.parametrize(
+    ("lost", "said"),
+    [
+        ({"epsilon": 0.05}, "below the limit by what is computed (the part of each landing on springs that epsilon or"),
+        ({"zeta": 0.02}, ""),
+    ],
+)
+def test_runs_left_open_by_landings_without_a_force_are_a_kind_of_their_own(lost, said):
+    """The dashpots of ζ have no such landings."""
+    tables = {
+        "title": "forces",
+        "pier": {"width_m": 4.0, "height_m": 24.0, "mass_t": 800.0},
+        "motions": {"pulse": [SINE | {"name": f"{t} s", "period_s": t} for t in (0.8, 1.0, 1.2)]},
+        "numerics": {"tolerance": 1e-3, "quiet_s": 10.0},
+        "output": {"forces": True},
+        "case": [{"name": "pads", "base": "elastic", "stiffness_kN_m": 2e6} | lost],
+        "check": [check("foot", "pivot_force_kN", "bearings", at_most=30000.0)],
+        "fragility": {"measure": "PGA", "levels_g": [0.25, 0.35]},
+    }
+    curve = rb.fragility(rb.Study.from_dict(tables)).info["curves"][-1]  # the first is overturning
+    assert curve["undecided"]["other"] == 0
+    assert curve["undecided"]["lower"] == (6 if said else 0)
+    assert said in curve["note"]
+    assert ("6 of 6 runs undecided: 6 below the limit" in curve["note"]) == bool(said)
 
 
 def test_a_check_with_infinite_flights_and_failures_leaves_them_undecided(tmp_path):
