@@ -12,14 +12,14 @@ from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
-from rockbatch.common.showing import capital, shown
+from rockbatch.common.showing import MOST_LISTED, abridged, capital, shown
 from rockbatch.quantities.cases import name_along
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.design import BOUND, under
 from rockbatch.quantities.statistics import STATISTICS
 
-MOST_NAMES, MOST_FILES = 3, 6
-"""Most names of cases that are listed, since the scorecard has all of them, and of files."""
+MOST_NAMES = 3
+"""Most names of cases that are listed, since the scorecard has all of them."""
 MOST_CHECKS = 3
 """Greatest number of checks that fail or are not decided with a line each in the answer."""
 
@@ -120,16 +120,16 @@ def missing_stations(stations: Stations) -> Line | None:
     whole = [name for name in stations.unusable if name not in stations.used]
     parts = {name: files for name, files in stations.unusable.items() if name in stations.used}
     names = _wholly_or_in_part(stations.unusable, stations.used)
-    text = f"{_listed(names, ', ')} could not be used"
+    text = f"{abridged(names, ', ')} could not be used"
     if stations.known:
         text = f"{len(stations.used)} of {stations.total} stations; {text}"
     reasons = grouped(
         stations.unusable, lambda name: "{source}: {reason}".format_map(stations.unusable[name][0]).rstrip(".")
     )
-    details = [f"{_listed(of_reason, ', ')}: {reason}." for reason, of_reason in reasons.items()]
+    details = [f"{abridged(of_reason, ', ')}: {reason}." for reason, of_reason in reasons.items()]
     more = [f"and {len(details) - MOST_CHECKS} more."] if len(details) > MOST_CHECKS else []
     keys = [*whole, *(file["name"] for files in parts.values() for file in files)]
-    listed = ", ".join([*map(shown, keys[:MOST_FILES]), *("…" for _ in keys[MOST_FILES : MOST_FILES + 1])])
+    listed = ", ".join([*map(shown, keys[:MOST_LISTED]), *("…" for _ in keys[MOST_LISTED : MOST_LISTED + 1])])
     remedy = f"To leave them out on purpose: leave_out = [{listed}] under [motions]."
     if len(details) == 1:
         return Line(NOT_DECIDED, text, next(iter(reasons)), (remedy,))
@@ -242,7 +242,7 @@ class _Cases:
         order = sorted(names, key=lambda name: -sum(runs[name].ended.values()) if ends[name] else 0)
         words = [f"{name}, {ends[name]}" if ends[name] else name for name in order]
         more = sum(bool(ends[name]) for name in order[MOST_NAMES:])
-        return _listed(words, most=MOST_NAMES) + (
+        return abridged(words, most=MOST_NAMES) + (
             f", {more} of them with runs that do not end standing" if more else ""
         )
 
@@ -281,7 +281,7 @@ class _Cases:
             for check, same in grouped(passed, lambda verdict: verdict.check).items()
         }
         words = [f"{check} ({wording.demanded_by(row, self.record_of(row))})" for check, row in farthest.items()]
-        return (f"Single records are beyond the limit: {_listed(words, most=MOST_CHECKS)}.",) if words else ()
+        return (f"Single records are beyond the limit: {abridged(words, most=MOST_CHECKS)}.",) if words else ()
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return a sentence, "drift, uplift: REMARK; REMARK.", on omissions of the same checks that these cases pass.
@@ -298,7 +298,7 @@ class _Cases:
         sentences = []
         for of_checks, omitted in grouped(checks, checks.__getitem__).items():
             is_all = len(of_checks) > MOST_CHECKS and every.issubset(of_checks)
-            words = "all checks of runs" if is_all else _listed(of_checks, ", ", MOST_CHECKS)
+            words = "all checks of runs" if is_all else abridged(of_checks, ", ", MOST_CHECKS)
             sentences.append(f"{words}: {'; '.join(OMISSIONS[name].remark for name in omitted)}.")
         return tuple(sentences)
 
@@ -306,7 +306,7 @@ class _Cases:
         """Return "Applies to no case: bearing, tilt." for checks of which every verdict says so; () for none."""
         by_check = grouped(self._of(self.every), lambda verdict: verdict.check)
         idle = [name for name, same in by_check.items() if {verdict.verdict for verdict in same} == {DOES_NOT_APPLY}]
-        return (f"{'Apply' if len(idle) > 1 else 'Applies'} to no case: {_listed(idle, ', ')}.",) if idle else ()
+        return (f"{'Apply' if len(idle) > 1 else 'Applies'} to no case: {abridged(idle, ', ')}.",) if idle else ()
 
     def _left_out(self) -> tuple[str, ...]:
         """Return sentences on stations, and files of used ones, left out by name, and on stations not selected; () for none.
@@ -315,7 +315,7 @@ class _Cases:
         """
         by_name = _wholly_or_in_part(self.stations.left_out, self.stations.used)
         lists = {"Left out by name": by_name, "Not selected": self.stations.not_selected}
-        return tuple(f"{words}: {_listed(names, ', ')}." for words, names in lists.items() if names)
+        return tuple(f"{words}: {abridged(names, ', ')}." for words, names in lists.items() if names)
 
     def without_limit(self, free: Mapping[str, Sequence[Worst]]) -> Line | None:
         """Return the line on cases that pass only because their governing responses have no limit; None for no case."""
@@ -362,7 +362,7 @@ class _Cases:
             failing = dict.fromkeys(verdict.columns.get(BOUND, "") for verdict in self._of([name], FAIL))
             if "" not in failing:
                 place = f"{name} " if len(self.every) > 1 else ""
-                sentences.append(f"{place}fails under {_listed([str(bound) for bound in failing], ', ')} only.")
+                sentences.append(f"{place}fails under {abridged([str(bound) for bound in failing], ', ')} only.")
         few = sentences[:MOST_NAMES]
         return (*(capital(words) if len(self.every) == 1 else words for words in few),)
 
@@ -435,9 +435,3 @@ def _excess(verdict: Verdict) -> float:
 def _few(names: Sequence[str]) -> str:
     """Return the names with semicolons between them if there are at most three; "" for more, which the scorecard lists."""
     return "; ".join(names) if len(names) <= MOST_NAMES else ""
-
-
-def _listed(names: Sequence[str], comma: str = "; ", most: int = MOST_FILES) -> str:
-    """Return up to ``most`` names with ``comma`` between them, then "and 3 more" for the number of the others."""
-    more = len(names) - most
-    return comma.join(names[:most]) + (f"{comma}and {more} more" if more > 0 else "")

@@ -2,7 +2,7 @@
 
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from html import escape
 from itertools import islice
@@ -10,6 +10,8 @@ from itertools import islice
 from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
 
+MOST_LISTED = 6
+"""Greatest number of names that a sentence lists, unless it says otherwise."""
 MOST_ROWS = 12
 """Greatest number of rows of a table in a notebook."""
 
@@ -68,6 +70,12 @@ def _short(value: object) -> str:
 def several(n: int, noun: str) -> str:
     """Return a count with its noun: "1 run", "2 runs"; empty for 0."""
     return "" if n == 0 else f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def abridged(names: Sequence[str], comma: str = "; ", most: int = MOST_LISTED) -> str:
+    """Return up to ``most`` names with ``comma`` between them, then "and 3 more" for the number of the others."""
+    more = len(names) - most
+    return comma.join(names[:most]) + (f"{comma}and {more} more" if more > 0 else "")
 
 
 def capital(words: str) -> str:

@@ -77,6 +77,7 @@ def plane(rows, find="least", tried=()):
 def left_open(**info):
     about = {
         "vary": VARIED[:1], "width": 0.04, "without_limit": [], "omitted": [], "unusable": 0, "refused": [], "lacking": [],
+        "not_selected": [],
         "tried": 11, "beyond": [], "cut_short": 0, "of_one_motion": False, "passing": 7,
     }  # fmt: skip
     return lambda: [text for _, text in design._remarks(about | info, [interval(0.06, 0.11)])]
@@ -154,6 +155,7 @@ DESIGNS = {
     "steps without a run": (left_open(width=0.01), [0.031]),
     "steps of a map": (left_open(vary=VARIED), [WIDTH, 0.45]),
     "files and limits": (left_open(unusable=4, without_limit=["uplift", "tilt"]), ["uplift, tilt", 4.0]),
+    "stations not selected": (left_open(not_selected=list("ABCDEFGHI")), ["A, B, C, D, E, F, and", 3.0, "more"]),
     "refused values": (
         left_open(vary=VARIED, refused=REFUSED, lacking=["rigid"]),
         [WIDTH, 0.45, 2.0, 11.0, FORCE, 0.15, WIDTH, 7.25, "too wide", f"{FORCE} and {WIDTH}", "rigid"],

@@ -8,11 +8,12 @@ import pytest
 from check_samples import PIER, RIGID, case, runs, verdict
 
 from rockbatch.checks import wording
-from rockbatch.checks.answer import MOST_FILES, MOST_NAMES, _listed, answer, without_limits
+from rockbatch.checks.answer import MOST_NAMES, answer, without_limits
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases, stations_of
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
+from rockbatch.common.showing import MOST_LISTED, abridged
 from rockbatch.pier import Damper, RigidBase
 
 SETTLED = {"settlement_m": [0.1, 0.381, 0.0, 0.2], "base_tilt_rad": [1e-3, -4e-3, 0.0, 0.0]}
@@ -325,11 +326,11 @@ def test_missing_stations_come_last_and_are_reported_without_checks_too():
 
 @pytest.mark.parametrize("more", [0, 3])
 def test_of_many_missing_stations_the_first_are_named_and_the_others_counted(more):
-    stations = Stations([], {f"S{i}": [LOST] for i in range(MOST_FILES + more)})
-    names = [f"S{i}" for i in range(MOST_FILES)]
+    stations = Stations([], {f"S{i}": [LOST] for i in range(MOST_LISTED + more)})
+    names = [f"S{i}" for i in range(MOST_LISTED)]
     (line,) = lines([], stations=stations)
     listed = ", ".join([*names, *["and 3 more"] * bool(more)])
-    assert line.text == f"0 of {MOST_FILES + more} stations; {listed} could not be used"
+    assert line.text == f"0 of {MOST_LISTED + more} stations; {listed} could not be used"
     listed = ", ".join([*(f'"{name}"' for name in names), *["…"] * bool(more)])
     assert line.details == (f"To leave them out on purpose: leave_out = [{listed}] under [motions].",)
 
@@ -486,4 +487,4 @@ def test_a_quantile_that_passes_says_how_many_further_records_exceed_it():
 
 @pytest.mark.parametrize(("number", "words"), [(2, "a; b"), (3, "a; b; and 1 more"), (5, "a; b; and 3 more")])
 def test_names_that_are_not_listed_are_counted(number, words):
-    assert _listed(list("abcde")[:number], most=2) == words
+    assert abridged(list("abcde")[:number], most=2) == words

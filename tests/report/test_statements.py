@@ -187,6 +187,14 @@ def test_files_that_could_not_be_used_keep_a_case_from_passing(tmp_path):
     assert 'records that could not be used: "WTMC.N"; records left out by name: "KOBE"' in text
 
 
+def test_stations_of_which_no_record_is_selected_are_named_up_to_six(tmp_path):
+    weak = {"source": "records.zip", "reason": "not selected", "named": False, "of": ""}
+    files = [weak | {"name": f"N{i}", "station": f"ST{i}"} for i in range(61)]
+    _, text = alone(folder(tmp_path / "out", runs((0.1, 0.2), "rigid"), [RIGID], left_out=files), FREE)
+    named = ", ".join(f'"ST{i}"' for i in range(6))
+    assert f"stations of which no record is selected: {named}, and 55 more;" in text
+
+
 def test_a_response_that_governs_without_a_limit_keeps_a_case_from_passing(tmp_path):
     yielded = {"ductility_left": 2.0, "ductility_right": 3.0, "settlement_m": 0.05, "base_tilt_rad": 1e-3}
     decided, text = alone(folder(tmp_path / "out", runs((0.1, 0.2), **yielded), [case()]), FREE)

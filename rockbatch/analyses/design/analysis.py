@@ -30,6 +30,7 @@ from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.observers import observers_beside
 from rockbatch.batch.threads import Engine
 from rockbatch.batch.waves import Waves, identity
+from rockbatch.checks.coverage import stations_of
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.suite_target import suite_of, suite_verdicts
 from rockbatch.checks.verdicts import PASS, Verdict, as_table
@@ -196,6 +197,7 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
             trials.execute(requested)
             requested = [*_bisected(trials, spec)]
         results.info |= _described(trials, spec, written, study)
+        results.info["not_selected"] = list(stations_of(info).not_selected)
         results.keep_table(INTERVALS, intervals_table(trials.judged, spec, written.varied, written.designs))
         results.keep_table(VALUES, values_table(trials.judged, spec, written.varied))
         results.keep_table(CHECKS, as_table(trials.verdicts))

@@ -11,7 +11,7 @@ from rockbatch.checks.wording import percent
 from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
-from rockbatch.common.showing import capital
+from rockbatch.common.showing import abridged, capital
 from rockbatch.reporting.finished_analysis import named
 from rockbatch.reporting.labels import counted
 from rockbatch.results.labelled import as_dicts
@@ -198,7 +198,7 @@ def _of_map(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Itera
 
 def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
     """Yield what the answer leaves open: steps without a run, responses without a limit, single records, runs and demands that
-    passes leave out, unusable files.
+    passes leave out, unusable files, stations of which no record is selected.
 
     Then, without a verdict, how many values are refused, with the first reason, and which cases lack the keys.
     """
@@ -228,6 +228,8 @@ def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
     if info["unusable"]:
         files = counted(info["unusable"], "file")
         yield NOT_DECIDED, f"{files} of the suite could not be used: what passes does so without these."
+    if info["not_selected"]:
+        yield NOT_DECIDED, f"Not selected: {abridged(info['not_selected'], ', ')}."
     if info["refused"]:
         first, more = info["refused"][0], len(info["refused"])
         values = zip(info["vary"], first["values"], strict=True)

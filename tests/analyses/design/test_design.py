@@ -3,6 +3,7 @@
 import json
 import re
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -17,6 +18,7 @@ from rockbatch.analyses.design.search import intervals, middles
 from rockbatch.analyses.design.study import DesignSpec, Varied, read_design
 from rockbatch.analyses.design.tables import intervals_table, values_table
 from rockbatch.analyses.design.trials import Design, Judged, Trial, Written
+from rockbatch.checks.coverage import stations_of
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS
 from rockbatch.commands.cli import main
@@ -24,6 +26,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import Area, Points, Polyline
 from rockbatch.common.files import read_table
 
+RECORDS = Path(__file__).parents[3] / "motions" / "near_fault"
 PIER = {"alpha": 0.2, "p": 1.5}
 WEIGHED = PIER | {"mass_t": 1000.0}
 PULSE = SINE | {"amplitude_g": 1.2, "duration_s": 2.0}
@@ -381,7 +384,7 @@ def said_of(verdicts, **more):
         "cut_short": 0,
         "of_one_motion": False,
     }
-    info |= {"unusable": 0, "refused": [], "tried": len(verdicts), "under": []} | more
+    info |= {"unusable": 0, "not_selected": [], "refused": [], "tried": len(verdicts), "under": []} | more
     return [
         words for _, words in answer(info, intervals_table(judged, spec, [], [design]), values_table(judged, spec, []))
     ]
@@ -412,6 +415,18 @@ def test_a_file_of_the_suite_that_cannot_be_used_is_told():
     assert "2 files of the suite could not be used: what passes does so without these." in said_of(
         {1.0: PASS}, unusable=2
     )
+
+
+def test_stations_of_which_no_record_is_selected_are_listed_as_a_run_lists_them(tmp_path):
+    chosen = {"path": str(RECORDS), "select": {"pga_g": [0.1, 0.3]}}
+    search = SIZE | {"vary": "pier.width_m", "between": [4.0, 5.0], "points": 2, "width": 0.5}
+    of_pier = {"pier": {"width_m": 4.0, "height_m": 24.0}, "motions": chosen, "cases": [RIGID], "check": [STANDS]}
+    of_study = rb.Study.from_toml(study_text(pulses=(), design=search, **of_pier))
+    rb.run(of_study, out=tmp_path / "out")
+    unused = stations_of(rb.open_results(tmp_path / "out").info).not_selected
+    assert unused
+    listed = ", ".join(unused)
+    assert f"Not selected: {listed}." in rb.design(of_study).answer
 
 
 def test_a_response_without_a_limit_is_named():

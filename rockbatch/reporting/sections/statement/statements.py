@@ -18,6 +18,7 @@ from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.suite_target import is_recorded
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import distinct, grouped
+from rockbatch.common.showing import abridged
 from rockbatch.quantities.cases import Case, is_across, name_along
 from rockbatch.quantities.design import of_design, under
 from rockbatch.quantities.labels import in_full
@@ -286,7 +287,7 @@ def _not_covered(design: _Design, stations: Stations) -> Iterator[str]:
         if files:
             yield f"records {kind}: {listed([str(file['name']) for of_station in files.values() for file in of_station])}"
     if stations.not_selected:
-        yield f"stations of which no record is selected: {listed(stations.not_selected)}"
+        yield f"stations of which no record is selected: {abridged([*map(quoted, stations.not_selected)], ', ')}"
     for worst, _ in design.checks:
         if worst.verdict == DOES_NOT_APPLY:
             yield f"{quoted(worst.check)}, which does not apply: {worst.note}"
