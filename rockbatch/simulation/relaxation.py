@@ -5,6 +5,7 @@ See THEORY.md, Results of a run.
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -49,7 +50,7 @@ def add_relaxation(
 def add_later_yield(
     runs: Sequence[Run], outcomes: list[Outcome | None], trials: Mapping[int, Trial], stop: Stop
 ) -> None:
-    """Add to the errors of residuals in ``outcomes``, in place, what the bed of a footing still yields after the end of a run.
+    """Add to the errors of residuals and of plastic work in ``outcomes``, in place, what a footing's bed yields after the run.
 
     Each run that ends soon after its peak goes on for :data:`LASTING`/p, with the steps of its trial in ``trials``; twice
     (:data:`MARGIN`) the change is added. The outcome of a run that is stopped becomes None.
@@ -62,11 +63,14 @@ def add_later_yield(
         if outcome is None or later is None:
             outcomes[i] = None
             continue
-        changes = {}
+        changes: dict[str, object] = {}
         for name in ("theta_res", "settlement"):
             after, known = getattr(later.outcome, name), getattr(outcome, f"{name}_error")
             if after is not None and known is not None:
                 changes[f"{name}_error"] = known + MARGIN * abs(after - getattr(before, name))
+        bed, ahead = outcome.bed, later.outcome.bed
+        if bed is not None and bed.work_error is not None and ahead is not None and before.bed is not None:
+            changes["bed"] = replace(bed, work_error=bed.work_error + MARGIN * abs(ahead.work - before.bed.work))
         outcomes[i] = outcome.changed(**changes)
 
 

@@ -324,6 +324,14 @@ def on_bed(number):
     )
 
 
+@pytest.mark.slow
+def test_still_ground_changes_the_plastic_work_of_a_bed_by_no_more_than_its_error():
+    """By a third of what it is at the end of the run, as no halving of the steps or strips does."""
+    pier, base, motion = on_bed(4)
+    soon, late = (run_to_tolerance(pier, base, motion, 1e-4, tail).bed for tail in (2.0, 60.0 / pier.p))
+    assert 0.3 * soon.work < late.work - soon.work <= soon.work_error
+
+
 @pytest.mark.thorough
 def test_still_ground_changes_no_residual_on_a_bed_by_more_than_its_error():
     """The bed yields on while the pier still rocks; six of 28 by more than the errors of steps and strips."""
