@@ -81,14 +81,14 @@ _SHORT_AND_1_S = {
     "sds_g": Key(
         positive,
         "1.0",
-        "Design spectral acceleration S_DS of ASCE 7 or AASHTO, at short periods.",
+        "Design spectral acceleration S_DS of ASCE 7 or AASHTO, at short periods: of ASCE 7 two thirds of that of MCE_R.",
         required=True,
         usual=Usual(5.0, "g: codes have 0.1 to 3 g", 0.005),
     ),
     "sd1_g": Key(
         positive,
         "0.6",
-        "Design spectral acceleration S_D1 of ASCE 7 or AASHTO, at 1 s.",
+        "Design spectral acceleration S_D1 of ASCE 7 or AASHTO, at 1 s: of ASCE 7 two thirds of that of MCE_R.",
         required=True,
         usual=Usual(5.0, "g: codes have 0.05 to 2 g", 0.002),
     ),

@@ -192,6 +192,11 @@ def test_asce_judges_a_suite_at_the_maximum_considered_earthquake():
     assert judged(0.9, 1.0) == [(FAIL, (level,))]
     assert judged(0.9, 1.5) == [(PASS, (level, "at scale 1.5"))]
     assert judged(1.35, 1.0, at_least=1.35) == []  # the condition of the study
+    for factors in ("each", "none"):  # at_least scales no suite there
+        ((_, (remark, *_)),) = judged(0.8, 1.0, factors=factors, required=True)
+        scale = float(remark.split("with scale = ")[1].split()[0])
+        assert scale == pytest.approx(1.35 / 0.8, rel=1e-4)
+        assert [row[0] for row in judged(0.8, scale, factors=factors, required=True)] == [PASS]
     motions = [rb.Motion(f"{i}", 0.01, wiggle(900, i), azimuth=90.0 * (i % 2), station=f"S{i // 2}") for i in range(22)]
     fitted = SpectrumTarget(AsceSpectrum(0.8, 0.5, 8.0), (0.3, 3.0), pairs="rotd100", at_least=1.35)
     factors = fitted.factors_of(motions, 9.81)
