@@ -204,7 +204,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":
         high = np.where(runs.facts("may_overturn"), np.inf, high)
-    lower = (open_landings(demand, runs, case) | open_ends(demand, runs)) & np.isfinite(value)
+    lower = (open_landings(demand, runs, case) | open_ends(demand, runs, case)) & np.isfinite(value)
     unknown = at_least | lower
     for name, way in rule.ways.items():
         ended = status == name

@@ -176,6 +176,11 @@ def lands_by_impulse(case: Case) -> bool:
     return case["base"] in IMPULSIVE
 
 
+def gives_way(case: Case) -> bool:
+    """Return whether the ground of a case gives way, so that a gap has the vertical motion of the pier in it, too."""
+    return not lands_by_impulse(case)
+
+
 def stops_by_impulse(case: Case) -> bool:
     """Return whether an impulse takes part of the speed of every landing on springs: by ε < 1, or by Housner's factor."""
     return asks_tension(case) or float(case["parameters"].get("epsilon", 1.0)) < 1.0

@@ -179,11 +179,11 @@ FIXED = (
         "settlement_m", "mean settlement of the supports", "settlement", "m",
         ReportFormat("settlement", ".2f", 1000), " since the start", bases=SPRINGS, stood=True,
         suite=OfSuite("Settlement", ".2f"), error="settlement_error_m", limits=_SETTLEMENTS,
-        settlement=True, condition=YIELDS,
+        settlement=True, yielding=True, condition=YIELDS,
     ),
-    Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),), condition=LANDS),
+    Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),), condition=LANDS, cumulative=True),
     Quantity(
-        "separations", "number of separations", "separations", kind="count", limits=(Limit(),),
+        "separations", "number of separations", "separations", kind="count", limits=(Limit(),), cumulative=True,
         more=", on rigid ground of lift-offs from rest; one in the instant of an impact has no event of its own",
     ),
     Quantity(
@@ -204,8 +204,8 @@ _DISSIPATED = "plastic work of each support, per unit mass"
 TRAILING = (
     Quantity(
         "theta_res_error",
-        "estimated error of the residual rotation over α, including its drift between readings and its further change as "
-        "dampers slip; empty if it is chaotic, and with a fixed step",
+        "estimated error of the residual rotation over α, including its drift between readings, its further change as "
+        "dampers slip and what a bed yields after the run; empty if it is chaotic, and with a fixed step",
         "theta_res_error", over_alpha=True, bases=TILTS,
         stood=True,
     ),
@@ -222,7 +222,7 @@ TRAILING = (
     Quantity(
         "ductility_right", _DUCTILITY.format("each"), "ductility_right",
         page=ReportFormat("ductility R", ".2f", behind="ductility_left"),
-        bases=YIELDING, limits=greater("ductility", _DUCTILITY, Limit(ceiling=_SPENT)),
+        bases=YIELDING, limits=greater("ductility", _DUCTILITY, Limit(ceiling=_SPENT)), yielding=True,
     ),
     Quantity(
         "dissipated_left_J_kg", _DISSIPATED, "dissipated_left", "J/kg",
@@ -265,6 +265,7 @@ TRAILING = (
         _top_drift, "m", ReportFormat("drift", ".1f", 1000, "t_max_s"),
         ": that height times the greatest rotation; of a shaft that bends its greatest horizontal way",
         limits=tuple(map(_bent_as_well, (*_displacements("top_drift", top), _DRIFT_RATIO))), directed=True,
+        later=bends,
     ),
     Quantity(
         "heel_uplift_m", "greatest rise of the heel above the toe",
@@ -280,12 +281,13 @@ TRAILING = (
     Quantity(
         "flights", "number of flights, with both pivots off the ground", "flights",
         kind="count", more="; includes a flight that ended the run",
-        limits=(Limit(evaluate=in_flight("flights")),),
+        limits=(Limit(evaluate=in_flight("flights")),), cumulative=True,
     ),
     Quantity(
         "flight_duration_s", "time with both pivots in the air",
         lambda run: run.outcome.flight_duration or None, "s",
-        more=", in all flights together", sometimes=True, limits=(Limit(evaluate=in_flight("flight_duration_s")),),
+        more=", in all flights together", sometimes=True, cumulative=True,
+        limits=(Limit(evaluate=in_flight("flight_duration_s")),),
     ),
     Quantity(
         "flight_height_m", "greatest height of the lower pivot above the ground",
@@ -311,8 +313,8 @@ TRAILING = (
     ),
     Quantity(
         "settlement_error_m",
-        "estimated error of the settlement, including its drift between readings; empty if it is chaotic, and with a "
-        "fixed step",
+        "estimated error of the settlement, including its drift between readings and what a bed yields after the run; empty if "
+        "it is chaotic, and with a fixed step",
         "settlement_error", "m", bases=SETTLING, stood=True, sometimes=True,
     ),
     Quantity(
@@ -333,7 +335,7 @@ TRAILING = (
     ),
     fact(
         "still_rocks", "the run ends so soon after the greatest rotation that the pier may land harder later",
-        "; forces and demands of devices are then lower bounds, which a longer `quiet_s` may raise",
+        "; forces, counts and demands of devices are then lower bounds, which a longer `quiet_s` may raise",
     ),
 )  # fmt: skip
 """Quantities that every table has behind the varied keys. A table of an earlier version may lack the last of them."""
@@ -385,6 +387,7 @@ _OF_BENDING = (
         limits=LENGTHS,
         requested=_bends,
         directed=True,
+        later=bends,
     ),
     Quantity(
         "deflection_error_m",

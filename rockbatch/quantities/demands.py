@@ -83,7 +83,10 @@ class Facts:
     # forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
     directed: bool = False
     settlement: bool = False  # true if it is a settlement of the supports
+    yielding: bool = False  # true if supports that go on yielding raise it
     cumulative: bool = False  # true if it grows until the run ends, when its peak is decided
+    # cases in which landings after the greatest rotation may raise it; None by its kind (:meth:`Demand.grows_with_landings`)
+    later: Callable[[Case], bool] | None = None
     condition: Condition | None = None  # what a case of its bases must have for it to be anything but 0
 
 
@@ -129,11 +132,14 @@ class Demand(Facts):
         """True if it is about a section of the shaft, at the height of the check."""
         return self.needs in AT_HEIGHTS
 
-    @property
-    def grows_with_landings(self) -> bool:
-        """True if landings after the greatest rotation may raise it: a force, a speed, or what a device or a bed does."""
-        of_bed = self.bases == ("footing",) and not self.settlement
-        return self.needs == "forces" or self.in_section or bool(self.device) or of_bed
+    def grows_with_landings(self, case: Case) -> bool:
+        """Return whether landings after the greatest rotation may raise it in a case.
+
+        They do if it has no cases of its own (``later``): forces, speeds, what devices do, and what grows until the run ends.
+        """
+        if self.later is not None:
+            return self.later(case)
+        return self.landing or self.cumulative or self.needs == "forces" or self.in_section or bool(self.device)
 
     @property
     def brings(self) -> set[str]:

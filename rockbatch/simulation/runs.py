@@ -430,16 +430,16 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
 def _still_rocks(pier: Pier, base: Base, result: Result) -> bool:
     """Return True if a pier that stands may land harder, or load its devices more, after the end of its run than in it.
 
-    On bare rigid ground it has not landed since its peak. Else its run ended within a period of free rocking of a rigid block
-    from there: devices may be on the other side, the force of a landing on springs comes after it, and with vertical vibration
-    the next one may be harder. False for a pier that rests or never left its springs, and on yielding springs, where a run
-    lasts until the pier stays down.
+    A rigid block on bare rigid ground has not landed since its peak. Else its run ended within a period of free rocking of such
+    a block from there: devices may be on the other side, a landing loads springs, and bends a shaft, after it, and with vertical
+    vibration the next one may be harder. False for a pier that rests, or never left ground other than a bed of strips, which
+    presses a pier that has not lifted off, too; and on yielding springs, where a run lasts until the pier stays down.
     """
-    stays_down = result.uplifts + result.impacts == 0 and not isinstance(base, FootingBase)  # footings count neither
-    rests = stays_down if base.on_springs else result.theta_end == 0.0
+    stays_down = result.uplifts + result.impacts == 0 and not isinstance(base, FootingBase)
+    rests = stays_down if base.on_springs or base.bends else result.theta_end == 0.0
     if rests or isinstance(base, YieldingBase):
         return False
-    if not (base.on_springs or base.restraints):
+    if not (base.on_springs or base.restraints or base.bends):
         return not result.t_impact > result.t_max
     return result.t_end - result.t_max < swing_after_peak(pier, result.theta_max)
 

@@ -30,6 +30,7 @@ from rockbatch.checks.omissions import (
     STILL_ROCKS,
     TAIL,
     TENDONS,
+    YIELDS_ON,
 )
 from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.verdicts import read_verdicts, write_verdicts
@@ -94,7 +95,8 @@ def test_a_force_on_rigid_ground_passes_only_if_the_pier_never_lands(demand, imp
 
 def test_the_blow_of_a_landing_enters_these_forces_and_no_other_demand():
     share = {"section_moment_over_capacity", "base_shear_over_capacity"}
-    assert {name for name, demand in DEMANDS.items() if demand.landing} == ENTERED | share
+    on_bed = {"bed_force_over_weight", "bed_pressure_MPa"}
+    assert {name for name, demand in DEMANDS.items() if demand.landing} == ENTERED | share | on_bed
     axial = {"section_axial_kN", "section_tension_kN"}
     upright = {
         "normal_force_m_s2",
@@ -459,11 +461,12 @@ def test_a_settlement_above_a_safety_factor_of_two_is_said_to_be_a_lower_bound(d
 
 
 def test_what_grows_until_the_run_ends_is_said_to_be_a_lower_bound():
-    """Energies of devices, and travel, work and half cycles of dampers; strokes, forces and rotations are not."""
+    """Counts, energies of devices, travel, work and half cycles of dampers, and those of a bed; strokes and rotations are not."""
     grow = {name for name, demand in DEMANDS.items() if demand.cumulative}
     assert grow == {
         *(f"{device}_energy_J_kg" for device in ("damper", "stop", "deck_spring")),
         *("damper_travel_m", "damper_work_J_kg", "damper_work_kJ", "damper_half_cycles"),
+        *("impacts", "separations", "flights", "flight_duration_s", "yielding_half_cycles", "bed_work_J_kg"),
     }
     oil = case("oil", RigidBase(restraints=(Damper("viscous", nu=0.3),)))
     table = runs(
@@ -480,15 +483,23 @@ def test_what_grows_until_the_run_ends_is_said_to_be_a_lower_bound():
     [
         *(
             (demand, True)
-            for demand in ("normal_force_kN", "landing_velocity_m_s", "damper_stroke_m", "section_axial_kN")
+            for demand in (
+                "normal_force_kN",
+                "landing_velocity_m_s",
+                "damper_stroke_m",
+                "section_axial_kN",
+                "impacts",
+                "flights",
+            )
         ),
-        *((demand, False) for demand in ("theta_max_over_alpha", "heel_uplift_m", "overturned")),
+        *((demand, False) for demand in ("theta_max_over_alpha", "heel_uplift_m", "heel_gap_m", "overturned")),
     ],
 )
 def test_a_run_that_ends_before_a_harder_landing_decides_no_force_that_it_could_pass(demand, open_):
     """On rigid ground too, before the first of all; what exceeds its limit fails."""
     oil = case("oil", RigidBase(restraints=(Damper("viscous", nu=0.3),)))
-    cells = {"normal_force_kN": 0.2, "damper_stroke_m": 0.2, "landing_velocity_m_s": math.nan}
+    cells = {"normal_force_kN": 0.2, "damper_stroke_m": 0.2, "landing_velocity_m_s": math.nan, "flights": 0}
+    cells |= {"heel_gap_left_m": 0.2, "heel_gap_right_m": 0.1}
     errors = {"base_shear_m_s2": 1.0, "forces_error": 1e-6, "devices_error": 1e-6, "theta_max_error": 1e-5}
     table = runs([0.1, 0.2], name="oil", impacts=0, **errors, **cells)
     soon, later = table.assign(still_rocks=[1, 0]), table.assign(still_rocks=0)
@@ -498,6 +509,43 @@ def test_a_run_that_ends_before_a_harder_landing_decides_no_force_that_it_could_
     assert judged(later, **asked).verdict == judged(table, **asked).verdict == "pass"
     if demand in ("normal_force_kN", "damper_stroke_m"):
         assert judged(soon, **asked | {"at_most": 0.1}).verdict == "fail"
+
+
+@pytest.mark.parametrize(
+    ("demand", "cells", "bases"),
+    [
+        ("top_drift_m", {"top_drift_m": 0.2, "top_drift_error_m": 1e-6}, {"bent"}),
+        ("deflection_max_m", {"deflection_max_m": 0.2, "deflection_error_m": 1e-6}, {"bent"}),
+        ("heel_gap_m", {"heel_gap_left_m": 0.2, "heel_gap_right_m": 0.1, "forces_error": 1e-6}, {"damped", "foot"}),
+        ("bed_force_over_weight", {"bed_force_over_weight": 0.2, "bed_force_error": 1e-6}, {"foot"}),
+        ("settlement_m", {"settlement_m": 0.2, "settlement_error_m": 1e-6}, set()),
+    ],
+)
+def test_a_later_landing_leaves_what_it_may_raise_open_by_the_ground_and_the_shaft(demand, cells, bases):
+    """Drift of a rigid shaft, and gaps on rigid ground, are those of the greatest rotation; a settlement has an error of it."""
+    cases = {"bent": bent(), "damped": DAMPED, "rigid": RIGID, "foot": case("foot", FootingBase(60.0, 3.0))}
+    table = runs([0.1], theta_max_error=1e-5, base_shear_m_s2=1.0, still_rocks=1, impacts=0, **cells)
+    found = {
+        name: judged(table.assign(case=name), one=one, demand=demand, at_most=0.5)
+        for name, one in cases.items()
+        if DEMANDS[demand].applies_to(one)
+    }
+    assert {name for name, its in found.items() if its.left_open == STILL_ROCKS} == bases
+    assert all(its.verdict == ("not decided" if name in bases else "pass") for name, its in found.items())
+
+
+def test_a_pass_says_that_springs_go_on_yielding_when_a_run_that_counts_is_read():
+    """Ductility and settlements; a footing has no such drift."""
+    cells = {"settlement_m": 0.01, "settlement_error_m": 1e-4, "ductility_left": 1.2, "ductility_right": 1.1}
+    table = runs([0.1, 0.2], name="pads", theta_max_error=1e-5, base_tilt_rad=1e-3, theta_res_error=1e-4, **cells)
+    pads = case("pads", YieldingBase(60.0, eta=3.0, zeta=0.05))
+    for demand in ("ductility", "settlement_m", "toe_settlement_m", "theta_max_over_alpha"):
+        for drift, goes_on in ((-2e-6, demand != "theta_max_over_alpha"), (5e-7, False), (math.nan, False)):
+            drifting = table.assign(settlement_drift_m_s=[0.0, drift])
+            found = judged(drifting, one=pads, demand=demand, at_most=2.0, confirm=["at_most"])
+            assert (found.verdict, YIELDS_ON in found.omits) == ("pass", goes_on), (demand, drift)
+    left_out = table.assign(settlement_drift_m_s=[0.0, 1e-3], status=["ok", "overturned"])
+    assert YIELDS_ON not in judged(left_out, one=pads, demand="ductility", at_most=2.0, overturned="left out").omits
 
 
 @pytest.mark.parametrize(("quiet_s", "found"), [(2.0, ["not decided", "not decided"]), (20.0, ["not decided", "fail"])])

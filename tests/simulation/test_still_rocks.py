@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 import rockbatch as rb
+from rockbatch.checks.omissions import OMISSIONS, STILL_ROCKS
 from rockbatch.common.units import GRAVITY
 
 PIER = rb.Pier(alpha=0.13, p=0.35)
@@ -61,6 +62,24 @@ def test_a_pier_on_springs_still_rocks_for_a_period_after_its_peak():
 def test_other_piers_do_not(base, amplitude):
     found = row(base, amplitude)
     assert (found["status"], found["still_rocks"]) == ("ok", 0)
+
+
+@pytest.mark.slow
+def test_a_bending_shaft_on_rigid_ground_still_rocks_for_a_period_after_its_peak():
+    """It bends most after the landing at which the run of 2 s would end."""
+    pier, bending = replace(PIER, flexural_period_s=0.4), rb.RigidBase(shaft="elastic", flexural_modes=1)
+    short, long = (row(bending, 0.32, quiet_s, pier) for quiet_s in (2.0, 20.0))
+    assert 0 < short["impacts"] < long["impacts"]
+    assert (short["still_rocks"], long["still_rocks"]) == (1, 0)
+    assert long["deflection_max_m"] > 1.5 * short["deflection_max_m"]
+
+
+@pytest.mark.parametrize("base", [rb.RigidBase(), ELASTIC], ids=["rigid", "springs"])
+def test_a_tail_of_40_over_p_decides_as_the_remark_on_checks_says(base):
+    assert "quiet_s = 40/p" in OMISSIONS[STILL_ROCKS].remark
+    for amplitude in (0.38, 0.405):
+        assert row(base, amplitude)["still_rocks"] == 1
+        assert row(base, amplitude, 40.0 / PIER.p)["still_rocks"] == 0
 
 
 def test_an_overturned_pier_has_no_later_landing_to_tell():

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from rockbatch.pier import Pier
-from rockbatch.quantities.cases import LANDS, LANDS_BY_IMPULSE, always, per_gravity
+from rockbatch.quantities.cases import LANDS, LANDS_BY_IMPULSE, always, gives_way, per_gravity
 from rockbatch.quantities.demands import Ceiling
 from rockbatch.quantities.limits import LENGTHS, greater
 from rockbatch.quantities.quantity import ENDINGS, Limit, Quantity, ReportFormat, Run, fact, in_print
@@ -142,7 +142,7 @@ QUANTITIES = (
     _force("heel_gap_left_m", _GAP.format("each"), "heel_gap_left", "m", "heel gap L", ".1f", 1000, more=_GAP_MORE),
     _force(
         "heel_gap_right_m", _GAP.format("each"), "heel_gap_right", "m", "heel gap R", ".1f", 1000, more=_GAP_MORE,
-        limits=greater("heel_gap/_m", _GAP, *LENGTHS), directed=True,
+        limits=greater("heel_gap/_m", _GAP, *LENGTHS), directed=True, later=gives_way,
     ),
     _force("heel_speed_left_m_s", _SPEED, "heel_speed_left", "m/s", "heel speed L", ".3f"),
     _force(
