@@ -74,6 +74,16 @@ def test_a_bending_shaft_on_rigid_ground_still_rocks_for_a_period_after_its_peak
     assert long["deflection_max_m"] > 1.5 * short["deflection_max_m"]
 
 
+@pytest.mark.slow
+def test_a_bending_shaft_still_rocks_with_both_feet_down():
+    """The run ends in the landing, which bends the shaft most: by two fifths more."""
+    pier, bending = rb.Pier(alpha=0.13, p=0.8, flexural_period_s=1.0), rb.RigidBase(shaft="elastic", flexural_modes=1)
+    pulse = rb.Motion("half-sine", 0.01, 0.18 * GRAVITY * np.sin(np.pi * np.arange(101) / 100.0))
+    short, long = (rb.simulate(pier, bending, pulse, quiet_s=quiet_s) for quiet_s in (0.5, 20.0))
+    assert (short.theta[-1], short.row["still_rocks"], long.row["still_rocks"]) == (0.0, 1, 0)
+    assert long.row["deflection_max_m"] > 1.35 * short.row["deflection_max_m"]
+
+
 @pytest.mark.parametrize("base", [rb.RigidBase(), ELASTIC], ids=["rigid", "springs"])
 def test_a_tail_of_40_over_p_decides_as_the_remark_on_checks_says(base):
     assert "quiet_s = 40/p" in OMISSIONS[STILL_ROCKS].remark

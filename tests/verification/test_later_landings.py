@@ -15,10 +15,11 @@ pytestmark = pytest.mark.thorough
 
 DEMANDS = (
     "landing_velocity_m_s", "normal_force_m_s2", "base_shear_m_s2", "base_moment_m2_s2", "omega_max_over_p",
-    "damper_stroke_m", "damper_force_over_weight", "damper_speed_m_s",
+    "damper_stroke_m", "damper_force_over_weight", "damper_speed_m_s", "deflection_max_m", "top_drift_m",
 )  # fmt: skip
 BASES = {
     "rigid": lambda rng, beta, restraints: rb.RigidBase(restraints=restraints),
+    "bending": lambda rng, beta, restraints: rb.RigidBase(shaft="elastic", flexural_modes=1),
     "damped": lambda rng, beta, restraints: rb.ElasticBase(beta, zeta=float(10.0 ** rng.uniform(-2.0, -0.5))),
     "elastic": lambda rng, beta, restraints: rb.ElasticBase(
         beta, epsilon=float(rng.choice([0.0, 0.3, 0.7])), restraints=restraints
@@ -27,8 +28,8 @@ BASES = {
         beta, eta=float(rng.uniform(2.0, 4.0)), spring="epp", zeta=0.05
     ),
 }
-MOST = {"rigid": 1.001, "damped": 1.25, "elastic": 1.25, "yielding": 1.25}
-"""Ratio by which a long tail may raise a demand of a run that no longer rocks: vertical vibration meets each landing anew."""
+MOST = {"rigid": 1.001, "bending": 1.25, "damped": 1.25, "elastic": 1.25, "yielding": 1.25}
+"""Ratio by which a long tail may raise a demand of a run that no longer rocks: vibration meets each landing anew."""
 
 
 def short(rng, alpha):
@@ -47,7 +48,9 @@ def short(rng, alpha):
 def raised(kind, seed):
     """Return ``still_rocks``, and the greatest ratio of a demand with a long tail to that with 2 s; None of a pier that fell."""
     rng = np.random.default_rng([seed, *map(ord, kind)])
-    pier = rb.Pier(alpha=rng.uniform(0.08, 0.25), p=rng.uniform(0.3, 1.5), confirm=("alpha", "p"))
+    pier = rb.Pier(
+        alpha=rng.uniform(0.08, 0.25), p=rng.uniform(0.3, 1.5), confirm=("alpha", "p"), flexural_period_s=0.5
+    )
     oil = rb.Damper("viscous", nu=rng.uniform(0.02, 0.2), at="left", confirm=("nu",))
     beta = max(1.5 * pier.least_beta, 10.0 ** rng.uniform(1.4, 2.0))
     base, motion = BASES[kind](rng, beta, (oil,) if rng.random() < 0.4 else ()), short(rng, pier.alpha)
@@ -66,4 +69,4 @@ def test_a_later_landing_hardly_raises_the_demands_of_a_pier_that_no_longer_rock
     assert len(at_rest) >= 12
     assert max(at_rest) <= MOST[kind]
     assert np.quantile(at_rest, 0.8) <= 1.001
-    assert (max(rocking) > 1.5) if kind in ("rigid", "elastic") else max(rocking, default=1.0) < 1.25
+    assert (max(rocking) > 1.5) if kind in ("rigid", "bending", "elastic") else max(rocking, default=1.0) < 1.25
