@@ -31,6 +31,7 @@ from rockbatch.motions.labels.orientation import (
     accidental,
     counted,
     direction_of_suffix,
+    glued,
     in_numbered_sets,
     is_clock,
     numbered,
@@ -67,6 +68,7 @@ class _Name(NamedTuple):
     site: str  # the station's part
     direction: Orientation | None
     site_of_several: str  # the station's part if the file holds several components, and is named after none of them
+    glued: tuple[str, Orientation] | None  # station's part and direction if the file states neither
 
 
 @dataclass(frozen=True)
@@ -387,7 +389,7 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, _Name]:
     for paths in grouped((file.path for file in files), lambda path: path.parent).values():
         stems = {path: archives.bare(path).stem for path in paths}
         by_chance = set.union(*(rule(stems.values()) for rule in (counted, numbered, accidental)))
-        apart, in_sets = told_apart(stems.values()), in_numbered_sets(stems.values())
+        apart, in_sets, ends_glued = (rule(stems.values()) for rule in (told_apart, in_numbered_sets, glued))
         alone = {stem: (stem, None) if stem in by_chance else split_stem(stem) for stem in stems.values()}
         ends = grouped(apart.items(), lambda item: item[1][0])
         shared = {site for site, of_site in ends.items() if len({alone[stem][1] for stem, _ in of_site}) == 1}
@@ -402,8 +404,9 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, _Name]:
         for path, stem in stems.items():
             site, direction = of_folder[stem]
             numbered_site = direction is not None and direction.label.isdigit() and site not in upright
-            by_suffix = direction_of_suffix(archives.bare(path).suffix)
-            names[path] = _Name(site, direction or by_suffix, stem if numbered_site else site)
+            direction = direction or direction_of_suffix(archives.bare(path).suffix)
+            end = None if direction else ends_glued.get(stem)
+            names[path] = _Name(site, direction, stem if numbered_site else site, end)
     return names
 
 
@@ -479,8 +482,11 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
 
 def _with_place(component: Component, path: Path, name: _Name, alone: bool) -> Component:
     """Return a component with its folder, its site by the file's ``name``, and that name's direction if ``alone`` in the file."""
-    component = add_name_statement(component, path.name, name.direction) if alone else component
-    site = _site(path, name.site if alone else name.site_of_several)
+    of_name, direction = name.site, name.direction
+    if name.glued and not (component.statements or component.station):
+        of_name, direction = name.glued
+    component = add_name_statement(component, path.name, direction) if alone else component
+    site = _site(path, of_name if alone else name.site_of_several)
     return replace(component, site=site, folder=path.parent.absolute().as_posix())
 
 

@@ -1,13 +1,14 @@
 """Which of the components of a set is the vertical one, where names and headers do not say it plainly."""
 
 from itertools import product
+from string import ascii_uppercase
 
 import numpy as np
 import pytest
 from motion_files import wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
-from rockbatch.motions import read_motions
+from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.labels.orientation import in_numbered_sets, split_stem
 
 COMPONENTS = [wiggle(seed=seed) for seed in (1, 2, 3)]
@@ -52,6 +53,32 @@ def test_an_end_glued_to_the_station_is_a_direction_among_three_with_a_vertical(
     for seed, name in enumerate(names):
         write_at2(tmp_path, f"{name}.AT2", wiggle(seed=seed), title="nothing said")
     assert [motion.vertical_source for motion in read_motions(tmp_path).motions].count(f"{names[2]}.AT2") == upright
+
+
+@pytest.mark.parametrize(
+    ("names", "title", "azimuth"),
+    [
+        ([f"GM{letter}" for letter in ascii_uppercase], "nothing said", None),
+        (["GMN", "GME", "GMV", "GMA"], "nothing said", None),
+        (["GMN", "GME", "GMV", "GM_B"], "nothing said", None),
+        (["BRAN", "BRAE", "BRAV"], "Made-up, 1/17/1994, Station {}, 090", 90.0),
+        (["VALE", "VALN", "VALZ"], "Made-up, 1/17/1994, Station {}", None),
+    ],
+)
+def test_an_end_glued_to_the_station_is_no_direction_among_more_or_against_a_title(tmp_path, names, title, azimuth):
+    for seed, name in enumerate(names):
+        write_at2(tmp_path, f"{name}.AT2", wiggle(seed=seed), title=title.format(seed))
+    found = read_motions(tmp_path, options=ReadOptions(role="horizontal"))
+    assert [(motion.name, motion.azimuth) for motion in found.motions] == [(name, azimuth) for name in sorted(names)]
+
+
+@pytest.mark.parametrize(("head", "columns"), [("time(s) N(g) E(g) Z(g)", 3), ("Azimuth: 90\ntime(s) acc(g)", 1)])
+def test_a_glued_end_is_no_direction_of_tables_that_state_theirs(tmp_path, head, columns):
+    for seed, name in enumerate(("BRKE", "BRKN", "BRKV")):
+        rows = np.column_stack([0.01 * np.arange(200), *(wiggle(200, 3 * seed + i) for i in range(columns))])
+        np.savetxt(tmp_path / f"{name}.txt", rows, "%.6f", header=head)
+    found = read_motions(tmp_path)
+    assert {motion.station for motion in found.motions} == {"BRKE", "BRKN", "BRKV"}
 
 
 def test_two_numbered_names_beside_a_vertical_are_horizontal(tmp_path):

@@ -315,19 +315,16 @@ def _is_end_of_word(label: str, stem: str) -> bool:
     return directed or label.startswith("VER") or (stem.isalpha() and stem.isupper())
 
 
-_BEFORE_LAST = r"((?<=[A-Za-z])(?=(?:[A-Za-z]|\d{3})$))"
-
-
 def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
     """Return station's part and orientation of stems that differ in one word only, each time in another direction: a_UP, a_000.
 
     The directions must have a vertical, or two at a right angle. Words count here that also name places, such as nord; numbers of
-    files do not. So do ends that are glued to the station, of three stems with a vertical: TAKN, TAKE, TAKV; TAK000, …, TAKV.
+    files do not.
     """
     split_stems: dict[str, tuple[str, Orientation]] = {}
     groups: dict[tuple[str, ...], dict[str, Orientation]] = {}
     for stem in dict.fromkeys(stems):
-        for separator in (r"([_. ]+)", r"([-_. ]+)", _BEFORE_LAST):  # norte-sur is one word, or two
+        for separator in (r"([_. ]+)", r"([-_. ]+)"):  # norte-sur is one word, or two
             words = re.split(separator, stem)
             for i in range(0, len(words), 2):
                 orientation = orientation_of(words[i])
@@ -339,11 +336,28 @@ def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
         upright = any(o.vertical for o in group.values())
         azimuths = [o.azimuth for o in group.values() if o.azimuth is not None]
         square = any(not not_square(a, b, "") for a, b in combinations(azimuths, 2))  # N and S may be streets
-        enough = len(group) > 2 and upright if around[1:2] == ("",) else len(group) > 1 and (upright or square)
-        if enough and len(group) == len(directions) and not _in_series(numbers):
+        if 1 < len(group) == len(directions) and (upright or square) and not _in_series(numbers):
             site = re.sub(r"([-_. ])[-_. ]*", r"\1", "".join(around)).strip("-_. ")
             for stem, orientation in group.items():
                 split_stems.setdefault(stem, (site, orientation))
+    return split_stems
+
+
+def glued(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
+    """Return station's part and orientation of stems whose last letter or azimuth is a direction: TAKN, TAKE, TAKV; TAK032, …
+
+    Of a station they are three, two horizontal ones at a right angle and a vertical, and no other stem begins like them.
+    """
+    names = list(dict.fromkeys(stems))
+    parted = [parts for name in names if (parts := re.fullmatch(r"(.*[A-Za-z])([A-Za-z]|\d{3})", name))]
+    split_stems: dict[str, tuple[str, Orientation]] = {}
+    for site, group in grouped(parted, lambda parts: parts[1]).items():
+        ways = {parts[0]: way for parts in group if (way := orientation_of(parts[2]))}
+        level = [way for way in ways.values() if not way.vertical]
+        if len(ways) == 3 and len(level) == 2 and sum(name.startswith(site) for name in names) == 3:
+            a, b = level
+            if (a.azimuth is None) == (b.azimuth is None) and not not_square(a.azimuth, b.azimuth, ""):
+                split_stems |= {name: (site, way) for name, way in ways.items()}
     return split_stems
 
 
