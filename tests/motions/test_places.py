@@ -81,8 +81,10 @@ STATIONS_ON_GROUND = (
     "Columbia - Airport", "Santa Cruz Pier", "Bent Creek", "Stone Tower Inn", "Wall Springs", "Piermont",
     "Top of the World", "Terrasse-Vaudreuil", "Remblai", "Damm", "Terrace", "Quinto", "Segundo Ruiz Belvis", "San Pietro 2",
     "Cortina d'Ampezzo", "Losa del Obispo", "Somewhere FS28", "Pier 3 Street", "Corona - I15 Bridge", "RF12",
-    "Puente Alto, Torre", "Anchorage - Port Bridge", "Some Dam, Tower Road", "Bridge, ground near tower", "7-story hotel",
-    "Edificio de 7 pisos",
+    "Puente Alto, Torre", "Anchorage - Port Bridge", "Some Dam, Tower Road", "Bridge, ground near tower",
+    "7-story hotel, ground floor", "12-story building, basement", "Edificio de 7 pisos, suelo",
+    "SJB Overpass, Bent 3 g.l.", "X Overpass, Pier 5 ground level", "Bridge, bent 3, ground", "Overpass, Bent 5 GL",
+    "Station near Pier 4", "Tower 3 substation", "Pier 3 Warehouse, Oakland", "Artesian Well 20 m N of road",
 )
 STATIONS_ON_STRUCTURES = (
     "Madeup Dam L Abut", "Madeup Dam - Southwest Abutment", "Dam (crest)", "Dam, Crest", "ELAZIG KEBAN (KRET-CREST)",
@@ -91,6 +93,8 @@ STATIONS_ON_STRUCTURES = (
     "Bay Bridge - East tower", "Staumauer Krone", "Golden Gate Bridge, south anchorage", "Universidad, pozo 100 m",
     "Bay Bridge, pier 3", "Viadotto, base pila 7", "Bridge - Bent B3", "Tower no. 2", "Presa, berma", "Dam, berms",
     "Hotel; 5th Fl", "Overpass, Footing", "Base of Column, Overpass", "Dam (right crest)",
+    "LOS ANGELES - 52-STORY BLDG", "VAN NUYS - 7-STORY HOTEL", "Edificio de 7 pisos",
+    "7-story hotel, ground floor of tower, 3rd floor", "Bridge, pier 3 top", "Bridge (east), tower 2 (top)",
 )
 # fmt: on
 

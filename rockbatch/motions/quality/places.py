@@ -32,7 +32,7 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
     },
     "ground": {
         "en": "ground, grnd, grd, soil, grade, lawn, yard, parking, field, hut, shed, shelter, vault, pad, kiosk, hillside, "
-        "surface",
+        "surface, g l",
         "es pt": "terreno, suelo, solo, jardin, jardim, caseta, patio",
         "fr it": "sol, terrain, jardin, suolo, terreno, giardino, cabina",
         "de": "boden, gelande, garten, huette, hutte",
@@ -146,6 +146,8 @@ _ORDINALS = (
     "второи третии четвертыи пятыи шестои последнии tweede derde vierde vijfde bovenste دوم سوم چهارم پنجم"
 )
 _NUMBERED = re.compile(r"[ .#-]+(?:no[. ]*)?[a-z]?-?\d+\b")
+_ENDS = re.compile(r" *(?:$|[;,.()-])")
+_STOREYS = re.compile(r"\d+[ -]*(?:stor(?:e?y|ies)|floors|pisos|plantas|andares|piani|etages)\b")  # a building's
 _IN_CHINESE = r"(?<!下)(?<!地)[二三四五六七八九十]+"  # floors; below the ground they begin with 地下
 _CARDINAL = re.compile(r"\b(?:north|south|east|west|n|s|e|w|nw|ne|sw|se|northwest|northeast|southwest|southeast)\b")
 _IN_BRACKETS = re.compile(r"\(([^()]+)\)")
@@ -155,6 +157,7 @@ _WIDE = r"぀-ヿ一-鿿가-힣؀-ۿ"  # scripts without blanks between words, o
 _LETTERS = "a-zα-ωа-я"
 
 _LENGTH = r"(?P<number>\d+(?:[.,]\d+)?) ?(?P<unit>m|mt|mts|meters?|metres?|metros|metri|ft|feet|foot)\b\.?"
+_DEPTH_BEHIND = re.compile(rf"[ ,#-]*{_LENGTH}")
 _DIRECTED = re.compile(
     r" *(?:from|away|of|to|off|n|s|e|w|ne|nw|se|sw|north|south|east|west|above|high|tall|wide|long|span|elev|asl|de|du|del|von"
     r"|vom|dal)(?![a-z])"
@@ -237,17 +240,25 @@ def _is_on_structure(text: str, is_name: bool) -> bool:
         return True
     if not is_name and re.search(rf"{_LENGTH} above\b", text):
         return True
+    if _pattern("ground", "base").search(text):
+        text = _STOREYS.sub("", text)
     return _upper_floor().search(text) is not None
 
 
 def _places_sensor(text: str, word: re.Match[str], is_name: bool) -> bool:
-    """Return whether a structure's word in a folded text places a sensor, and is no name of a street or a town."""
+    """Return whether a structure's word in a folded text places a sensor, and is no name of a street or a town.
+
+    In a station's name words of places do, behind a structure or with a number at their end, but not on or near the ground.
+    """
     number = _NUMBERED.match(text, word.end())
     if _is_street(text, (number or word).end(), is_name):
         return False
-    if not is_name or number or _pattern("structure").fullmatch(word[0]):
+    if not is_name or _pattern("structure").fullmatch(word[0]):
         return True
-    return _pattern("whole structure").search(text[: word.start()]) is not None
+    if _pattern("ground", "near").search(text):
+        return False
+    named = _pattern("whole structure").search(text[: word.start()])
+    return named is not None or (number is not None and _ENDS.match(text, number.end()) is not None)
 
 
 def _is_beside(before: str) -> bool:
@@ -275,8 +286,7 @@ def _upper_floor() -> re.Pattern[str]:
     number = r"(?<![\d.b-])(?:[2-9]|[1-9]\d)(?![\d])"
     ordinal = r"(?:st|nd|rd|th|er|do|to|mo|e|eme|ieme|de|ste|o|a|°|º|ª|\.|os|οσ|inci|uncu|ncu|-?и|-?м)?"
     words = rf"\b(?:{'|'.join(_ORDINALS.split())})\b"
-    height = r"\d+[ -]*(?:stor(?:e?y|ies)|floors|pisos|plantas|andares|piani|etages)\b"  # of a building: 7-story hotel
-    before = rf"(?!{height})(?:{number}{ordinal}|{words}|{_IN_CHINESE})[ -]*(?:{floor})"
+    before = rf"(?:{number}{ordinal}|{words}|{_IN_CHINESE})[ -]*(?:{floor})"
     return re.compile(rf"{before}|(?:{floor})[ .#]*(?:no[. ]*)?(?:{number}|{words})")
 
 
@@ -284,13 +294,14 @@ def _is_below(text: str, is_name: bool) -> bool:
     """Return whether a folded text says borehole, or a depth over 2 m; False if it says surface (but not "below surface")."""
     if _pattern("surface").search(text) and not re.search(r"below (?:the |ground )?surface", text):
         return False
-    kinds = ("borehole",) if is_name else ("borehole", "borehole, in places only")
-    if any(not _is_street(text, match.end(), is_name) for match in _pattern(*kinds).finditer(text)):
+    if any(not _is_street(text, match.end(), is_name) for match in _pattern("borehole").finditer(text)):
         return True
-    if any(
-        re.match(rf"[ ,#-]*{_LENGTH}", text[m.end() :]) for m in _pattern("borehole, in places only").finditer(text)
-    ):
-        return True
+    for word in _pattern("borehole, in places only").finditer(text):
+        length = _DEPTH_BEHIND.match(text, word.end())
+        if length is None and (is_name or _is_street(text, word.end(), is_name)):
+            continue
+        if length is None or not _DIRECTED.match(text, length.end()):
+            return True
     return any(depth > _LEAST_DEPTH for depth in _depths(text, is_name))
 
 
