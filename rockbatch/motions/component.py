@@ -96,6 +96,7 @@ class Component(Sourced):
     contradiction: str = ""  # between statements in its set, for which it is held back
     listed: Listed = NOT_LISTED  # PEER's search results
     turned: bool = False  # whether it is made of two, turned to a direction
+    own_folder: str = ""  # of the file, if called after its direction: it is then paired in the folder above
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "acceleration", frozen(self.acceleration))

@@ -339,7 +339,10 @@ def _out_of_folders_of_directions(readings: Sequence[Reading]) -> list[Reading]:
     }
     number = Counter(folder.parent for folder in called)
     above = {str(folder): str(folder.parent) for folder in called if number[folder.parent] > 1}
-    return [replace(r, folder=above.get(r.folder, r.folder)) if isinstance(r, Component) else r for r in readings]
+    return [
+        replace(r, folder=above[r.folder], own_folder=r.folder) if isinstance(r, Component) and r.folder in above else r
+        for r in readings
+    ]
 
 
 def _folder(reading: Reading) -> str:

@@ -70,6 +70,16 @@ def test_components_in_folders_called_after_their_directions_are_paired(tmp_path
     assert [*vertical_of(read_motions(tmp_path)).values()].count("2019/UP.D/x.UP.AT2") == upright
 
 
+def test_files_of_one_name_in_folders_called_after_their_directions_are_named_by_them(tmp_path):
+    for seed, (folder, label) in enumerate(zip(("EW", "NS", "UD"), ("90", "0", "UP"), strict=True)):
+        write_at2(tmp_path / "given" / folder, "STA1.AT2", wiggle(50, seed), title=title(label))
+    found = read_motions(tmp_path / "given")
+    assert [(motion.name, motion.vertical_source) for motion in found.motions] == [
+        ("EW/STA1", "UD/STA1.AT2"),
+        ("NS/STA1", "UD/STA1.AT2"),
+    ]
+
+
 def test_a_dwn_component_is_turned_up_and_it_is_said(tmp_path):
     up = wiggle(50, 2)
     write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))

@@ -93,7 +93,7 @@ def to_motions(
         for v in (v for group in verticals for v in group if id(v) not in used):
             unusable.append(Unusable(v.name, v.sources, _why_alone(v, components), station=known_as[number[id(v)]]))
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
-    named = _with_unique_names(motions, [c.folder for _, c in horizontals])
+    named = _with_unique_names(motions, [c.own_folder or c.folder for _, c in horizontals])
     pairs = zip(named, horizontals, strict=True)
     candidates = [Candidate(motion, component, peaks[station], gravity) for motion, (station, component) in pairs]
     patterns = {"confirm": confirmed, "confirm_pga": confirmed_pga}
