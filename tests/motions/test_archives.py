@@ -120,6 +120,7 @@ def test_miniseed_in_an_archive_takes_the_station_xml_beside_it_there(tmp_path):
 
 def test_companions_are_left_out_and_hidden_files_passed_over_as_in_folders(tmp_path):
     other = {"_SearchResults.csv": "x", "notes.pdf": "x", "RSN1.VT2": "x", "motions.toml": "x", "stations.xml": "<x/>"}
+    other["readme.st_N.txt"] = "x"
     passed = {"README.txt": "x", "readme.txt.gz": "x", "__MACOSX/._x.AT2": "x", ".git/x.AT2": "x"}
     write_zip(tmp_path / "x.zip", {"x.AT2": at2("x.AT2", 1), "unknown.xyz": "x", **other, **passed})
     found = read_motions(tmp_path)
@@ -127,6 +128,7 @@ def test_companions_are_left_out_and_hidden_files_passed_over_as_in_folders(tmp_
     assert {left.source: left.reason for left in found.left_out} == {
         "x.zip/_SearchResults.csv": "no record: a table about the records",
         "x.zip/notes.pdf": "no record: text about the records",
+        "x.zip/readme.st_N.txt": "no record: no columns of numbers found in it",
         "x.zip/RSN1.VT2": "no record: the velocity of a record",
         "x.zip/motions.toml": "no record: a manifest within an archive is not obeyed; put it beside that",
     }

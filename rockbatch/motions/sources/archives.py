@@ -51,8 +51,8 @@ def is_archive(path: Path | PurePosixPath) -> bool:
 
 
 def is_read_me(name: str) -> bool:
-    """Return whether a file is called read-me, whatever its suffixes: readme.txt.gz."""
-    return name.partition(".")[0].lower() == "readme"
+    """Return whether a file is called read-me, but for one suffix and a .gz: readme.txt.gz, not readme.st_N.txt."""
+    return bare(Path(name)).stem.lower() == "readme"
 
 
 def not_read(path: Path) -> str:
