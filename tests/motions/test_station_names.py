@@ -223,3 +223,17 @@ def test_tables_of_one_station_and_time_by_their_headers_are_one_record(tmp_path
         head = f"{lines.format(i)}\nComponent: {way}\nacceleration (g)\ndt = 0.01 s\n"
         (tmp_path / f"A{i}.txt").write_text(head + rows)
     assert [motion.vertical_source for motion in read_motions(tmp_path).motions].count("A2.txt") == upright
+
+
+@pytest.mark.parametrize(("folders", "upright"), [(("", ""), 0), (("first", "second"), 4)])
+def test_of_two_sets_of_one_station_without_dates_each_needs_its_folder(tmp_path, folders, upright):
+    for i, way in enumerate(("N-S", "E-W", "Up") * 2):
+        rows = "".join(f"{a:.6f}\n" for a in wiggle(seed=i))
+        (tmp_path / folders[i // 3]).mkdir(exist_ok=True)
+        text = f"Station: ABC\nComponent: {way}\nacceleration (g)\ndt = 0.01 s\n{rows}"
+        (tmp_path / folders[i // 3] / f"A{i}.txt").write_text(text)
+    found = read_motions(tmp_path)
+    assert sum(motion.vertical is not None for motion in found.motions) == upright
+    reasons = [one.reason for one in found.unusable]
+    said = "a vertical component of one of several sets that state one station: give each set a folder of its own"
+    assert reasons == [said] * (0 if upright else 2)

@@ -91,7 +91,8 @@ def to_motions(
         motions.append(_motion(component, partner, notes, known_as[station], requested=bool(vertical)))
     if vertical:
         for v in (v for group in verticals for v in group if id(v) not in used):
-            unusable.append(Unusable(v.name, v.sources, _why_alone(v, components), station=known_as[number[id(v)]]))
+            others = [c for c in components if number[id(c)] != number[id(v)]]
+            unusable.append(Unusable(v.name, v.sources, _why_alone(v, others), station=known_as[number[id(v)]]))
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
     named = _with_unique_names(motions, [c.own_folder or c.folder for _, c in horizontals])
     pairs = zip(named, horizontals, strict=True)
@@ -141,14 +142,19 @@ def _direction_question(component: Component) -> str:
     )
 
 
-def _why_alone(v: Component, components: Sequence[Component]) -> str:
-    """Return why a vertical has no horizontal: its station has none, or several of PEER's records, of which it names none."""
-    of_station = [c for c in components if v.station and (c.folder, c.station) == (v.folder, v.station)]
-    records = sorted({c.site for c in of_station if is_numbered(c.site) and not c.orientation.vertical})
+def _why_alone(v: Component, others: Sequence[Component]) -> str:
+    """Return why a vertical has no horizontal, by the components of ``others`` than its own record.
+
+    Its station has none, several of PEER's records, of which it names none, or several sets without dates.
+    """
+    of_station = [c for c in others if v.station and (c.folder, c.station) == (v.folder, v.station)]
+    of_station = [c for c in of_station if not c.orientation.vertical]
+    records = sorted({c.site for c in of_station if is_numbered(c.site)})
     if len(records) > 1 and not is_numbered(v.site):
         return f"a vertical component of {' or '.join(records)}: begin its name with the number"
-    of_set = v.site if is_numbered(v.site) else v.station or v.site
-    return f"a vertical component without a usable horizontal one of its station in its folder ({of_set})"
+    if of_station and not is_numbered(v.site) and not (v.dated and all(c.dated for c in of_station)):
+        return "a vertical component of one of several sets that state one station: give each set a folder of its own"
+    return f"a vertical component without a usable horizontal one of its station in its folder ({station_of(v)})"
 
 
 def _with_packaged(files: Sequence[Component], packaged: Sequence[Component]) -> list[Component]:
