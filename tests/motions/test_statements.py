@@ -207,6 +207,7 @@ def test_a_study_states_the_unit_that_one_file_lacks_and_loses_no_other(tmp_path
         ),
         *("単位：gal", "Units\tgal", "Μονάδα: gal"),
         *("Aceleración en cm/s2", "Beschleunigung in cm/s2", "Accelerations expressed in gal"),
+        *("Trigger: 2019-07-06; acceleration in gal", "Instrument corrected acceleration in gal (cm/s2)"),
     ],
 )
 def test_a_unit_in_the_text_of_a_header_counts_and_is_not_overridden(tmp_path, line):
@@ -215,8 +216,29 @@ def test_a_unit_in_the_text_of_a_header_counts_and_is_not_overridden(tmp_path, l
     np.testing.assert_allclose(one(tmp_path, unit="g").horizontal, A, atol=1e-6)
 
 
-def test_the_unit_of_a_peak_and_words_behind_in_are_no_unit_of_the_data(tmp_path):
-    write(tmp_path, "# Peak acceleration (cm/s2): 98.1\n# acceleration in station 3\n# Data, G. Smith\n# dt = 0.01", A)
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "Peak acceleration (cm/s2): 98.1\n# acceleration in station 3\n# Data, G. Smith",
+        "design acceleration, g = 0.35",
+        "target acceleration, g",
+        "Target acceleration in g",
+        "Threshold acceleration, g",
+        "Trigger acceleration - g",
+        "Recorder range: acceleration, g",
+        "Full scale acceleration, g",
+        "Bedrock acceleration is in g; see the report",
+        "Acceleration/g factor none",
+        "Values in g were converted to m/s2",
+        "Originally recorded values in g, converted to m/s2",
+        "Original acceleration in g",
+        "Gravity acceleration, m/s2",
+        "Gravity acceleration in m/s2",
+        "Accuracy in g",
+    ],
+)
+def test_the_unit_of_something_else_is_no_unit_of_the_samples(tmp_path, lines):
+    write(tmp_path, f"# {lines}\n# dt = 0.01", A)
     assert "has no unit" in reason(tmp_path)
     np.testing.assert_allclose(one(tmp_path, unit="m/s2").horizontal, A, atol=1e-6)
 

@@ -45,7 +45,9 @@ _STEP = re.compile(
     rf"(?:\s*[(\[]?\s*(?P<behind>{_STEP_UNITS})(?![A-Za-z]))?",
     re.IGNORECASE,
 )
-_OF_OTHER_DATA = re.compile(r"\b(?:original|raw|recorder|instrument|resampled|from|was|were)\b[^:=]*$", re.IGNORECASE)
+_OF_OTHER_DATA = re.compile(
+    r"\b(?:original(?:ly)?|raw|recorder|instrument(?![^:=]* correct)|resampled|from|was|were)\b[^:=]*$", re.IGNORECASE
+)
 
 # possessive (*+), so that matching any header line takes the square of its length at most
 _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
@@ -82,11 +84,11 @@ _STATED = re.compile(
     r"μονάδ[αε]ς?|единиц[аы]|単位|单位|單位)\s*[:=;\t]\s*(?:UTC,\s*)?(?P<unit>(?:\d*\.?\d+ )?\S+)",
     re.IGNORECASE,
 )
-_ACCELERATION = r"(?:acc|acel|beschl|ivme)\w*\.?"
+_ACCELERATION = r"(?:acc(?:el|[eé]l[eé]ra(?:tion|zion)\w*)?s?|acel(?:era\w*)?|beschl(?:eunigung\w*)?|ivme\w*)\.?"
 _OF_SERIES = r"(?:[ _]*(?:data|values|units?|time series|time history|record))?\s*"
 _SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; units are g; Acceleration unit: gal; Acc. (cm/s2); acceleration, g
-    rf"\b(?:units?(?: of acc\w*)?\s*(?:\b(?:of|is|are)\b|[:=])|{_ACCELERATION}{_OF_SERIES}(?:[,/]|- )|"
-    rf"(?:{_ACCELERATION}|(?:amplitude|data|value)s?){_OF_SERIES}(?:[:=(\[]|"
+    rf"(?:\bunits?(?: of acc\w*)?\s*(?:\b(?:of|is|are)\b|[:=])|^(?:(?:un)?corrected )?{_ACCELERATION}\s*(?:[,/]|- )(?=\s*\S+$)|"
+    rf"\b(?:{_ACCELERATION}|(?:amplitude|data)s?|values){_OF_SERIES}(?:[:=(\[]|"
     r"(?:(?:is|are|measured|expressed|given)\s+)*\b(?:in|en|em)\b(?: units? of| fractions? of)?))"
     r"\s*[(\[]?(?!units?\b)(?P<unit>(?:(?<=units of )\d*\.?\d+ )?[^\s,;()\[\]]+)",
     re.IGNORECASE,
@@ -113,7 +115,10 @@ _OF_FACTOR = re.compile(
     r"(?![\d.]|e[-+]?\d|\s*(?:per\b|[^\s/]*/|g\b|gals?\b))",  # with a unit it is a constant: 980.665 cm/s2 per g, 1.2345 V/g
     re.IGNORECASE,
 )
-_OF_NO_SAMPLES = re.compile(r"\b(?:target|design|arias|significant|bracketed)\b", re.IGNORECASE)
+_OF_NO_SAMPLES = re.compile(
+    r"\b(?:target|design|arias|significant|bracketed|threshold|trigger|range|full[ -]scale|bedrock|gravity)\b",
+    re.IGNORECASE,
+)
 _BEYOND_ROUNDING = {"peak": (0.05, math.inf), "duration": (0.01, math.inf)}  # of another stage of processing, perhaps
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
@@ -391,8 +396,23 @@ def stated_unit(header: Sequence[str]) -> str | None:
     stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
     if stated and is_acceleration(first := stated.partition("(")[0]):  # gal(cm/s/s)
         return first
-    units = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))
+    lines = (line for line in header if not _PEAK.search(line) and _names_one_unit(line))
+    units = (
+        m["unit"].rstrip(".") for line in lines for m in _SAID.finditer(line) if _is_of_samples(line[: m.start("unit")])
+    )
     return stated or next((unit for unit in units if is_acceleration(unit)), None)
+
+
+def _names_one_unit(line: str) -> bool:
+    """Return whether a line has words for one unit of acceleration at most, unlike "values in g, converted to m/s2"."""
+    words = (word.rstrip(".") for word in re.split(r"[\s,;:=()\[\]]+", line))
+    return len({acceleration_factor(word) for word in words if is_acceleration(word)}) < 2
+
+
+def _is_of_samples(before: str) -> bool:
+    """Return whether the words ``before`` a unit, from a semicolon on, may be of the samples: not "originally", "trigger …"."""
+    clause = before.rpartition(";")[2]
+    return not (_OF_NO_SAMPLES.search(clause) or _OF_OTHER_DATA.search(clause))
 
 
 def is_of_another_quantity(unit: str) -> bool:
