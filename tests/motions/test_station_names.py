@@ -216,11 +216,22 @@ def test_both_horizontals_in_one_file_have_the_vertical_beside_it(tmp_path, hori
     assert [motion.vertical_source for motion in read_motions(tmp_path)] == [vertical] * 2
 
 
-@pytest.mark.parametrize(("lines", "upright"), [("Station: ABC", 2), ("Station: ABC\nDate: {}", 0), ("Memo: ABC", 0)])
+@pytest.mark.parametrize(
+    ("lines", "upright"),
+    [
+        ("Station: ABC", 2),
+        ("Station: ABC\nMax. acceleration 0.9{} g at 5.0{} s\nNPTS = 200", 2),
+        ("Station: ABC\nDate: {}", 0),
+        ("Station: ABC\nTrigger: 2019-07-0{} 03:19:53, dt = 0.01 s", 0),
+        ("Station: ABC\nMagnitude: 5.{}", 0),
+        ("Station: ABC\nSensor depth: {}0 m", 0),
+        ("Memo: ABC", 0),
+    ],
+)
 def test_tables_of_one_station_and_time_by_their_headers_are_one_record(tmp_path, lines, upright):
     for i, way in enumerate(("N-S", "E-W", "Up")):
         rows = "".join(f"{a:.6f}\n" for a in wiggle(seed=i))
-        head = f"{lines.format(i)}\nComponent: {way}\nacceleration (g)\ndt = 0.01 s\n"
+        head = f"{lines.format(i, i)}\nComponent: {way}\nacceleration (g)\ndt = 0.01 s\n"
         (tmp_path / f"A{i}.txt").write_text(head + rows)
     assert [motion.vertical_source for motion in read_motions(tmp_path).motions].count("A2.txt") == upright
 

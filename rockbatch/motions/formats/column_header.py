@@ -64,12 +64,6 @@ _PLACE = re.compile(
     re.IGNORECASE,
 )
 _STATION = re.compile(rf"^(?:{_SITES})(?: ?(?:name|code|id|no|number|nombre|名)\.?)?\s*[:=;\t]", re.IGNORECASE)
-_EVENT = re.compile(
-    r"^(?:(?:event|earthquake|origin|evento|sismo|terremoto|s[ée]isme|erdbeben|deprem|地震|发震|землетрясение)[^:=;\t]*|"
-    r"(?:start |record(?:ing)? |trigger )?(?:date|time)(?: \w+)?|fecha|hora|datum|uhrzeit|tarih|saat|日時|日付|时间|日期|дата)"
-    r"\s*[:=;\t]",
-    re.IGNORECASE,
-)
 _OF_SOIL = re.compile(r"rock\b|\bsoil|water\b|\bvs|\bclass\b", re.IGNORECASE)
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]](?:[^,;\t()\[\]]*[^\s,;()\[\]])?)\s*+{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
@@ -376,11 +370,24 @@ def stated_place(header: Sequence[str]) -> str | None:
     return None if where is Stand.GROUND else words
 
 
-def stated_record(header: Sequence[str]) -> str:
-    """Return the lines on station, event and time, a key that the files of one record share; "" without a station."""
+def stated_record(header: Sequence[str], width: int) -> str:
+    """Return the header of a table of ``width`` columns as a key that the files of one record share; "" without a station.
+
+    Lines of direction, peak, unit and columns are left out of it, and counts and steps.
+    """
     if not any(map(_STATION.match, header)):
         return ""
-    return "; ".join(" ".join(line.upper().split()) for line in header if _STATION.match(line) or _EVENT.match(line))
+    shared = (line for line in header if not _is_of_component(line, width))
+    return "; ".join(" ".join(_STEP.sub("", _COUNT.sub("", line)).upper().split()) for line in shared)
+
+
+def _is_of_component(line: str, width: int) -> bool:
+    """Return whether a line states a direction, a peak or a unit, or names columns: components of a record may differ in it."""
+    keyed = KEYED.match(line)
+    if keyed and folded(keyed["key"]).strip() in DIRECTION_KEYS:
+        return True
+    of_columns = _NUMBERED.match(line) or columns_named([line], width)
+    return bool(of_columns or is_down([line]) or _STATED.match(line) or _PEAK.search(re.split(r"[:=;\d]", line)[0]))
 
 
 def stated_unit(header: Sequence[str]) -> str | None:

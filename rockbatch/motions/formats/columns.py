@@ -149,7 +149,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
     dt, values, moved = _on_one_step(columns, table, header, options)
     recordings, sensor = [], Sensor(place=stated_place(header))
     alone = len(used) == 1
-    key = stated_record(header) if alone and split_stem(stem)[1] is None else ""  # else its name tells the record
+    key = stated_record(header, len(columns)) if alone and split_stem(stem)[1] is None else ""  # else its name tells the record
     for i in used:
         label, orientation = columns[i].label, orientation_in(columns[i].label)
         if orientation.vertical and is_down(header) and not is_upward(label):
