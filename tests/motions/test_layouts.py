@@ -528,6 +528,10 @@ def test_headers_of_services_and_agencies_state_unit_step_and_count(tmp_path, ki
         ("方向：NS", 0.0, False),
         ("Component\tN-S", 0.0, False),
         ("Station: ABC, Component: N-S; Recorder: K2", 0.0, False),
+        ("Component: H1, Azimuth: 345", 345.0, False),
+        ("Station: ABC, Channel: HNE, Azimuth: 102", 102.0, False),
+        ("Component: N   Azimuth: 345", 345.0, False),
+        ("Azimuth: 0, Component: UP", None, True),
         ("Компонента: Вертикальная", None, True),
     ],
 )
@@ -535,6 +539,23 @@ def test_headers_of_services_and_agencies_state_unit_step_and_count(tmp_path, ki
 def test_a_line_of_the_header_tells_the_direction_of_an_only_column(tmp_path, line, azimuth, vertical, heads):
     (component,) = read_record(RecordFile(Path("x.txt"), "x.txt", f"{line}\n{heads}\n{in_columns(T, A)}".encode()))
     assert (component.orientation.vertical, component.orientation.azimuth) == (vertical, azimuth)
+
+
+@pytest.mark.parametrize(
+    ("line", "azimuth", "held"),
+    [
+        ("Component: N, Azimuth: 345", 345.0, ()),
+        ("Component: H1, Azimuth: 345", 345.0, ()),
+        ("Component: N, Azimuth: 90", None, ('its header says "90 deg"', 'its header says "N"')),
+        ("Component: UP, Azimuth: 12", None, ('its header says "UP"', 'its header says "12 deg"')),
+    ],
+)
+@pytest.mark.parametrize("columns", [(A,), (T, A)])
+def test_the_azimuth_in_a_header_is_compared_with_other_directions(tmp_path, line, azimuth, held, columns):
+    found = read(tmp_path, f"{line}\nAcceleration in g\ndt = {DT}\n{in_columns(*columns)}")
+    assert [motion.azimuth for motion in found.motions] == [azimuth] * (not held)
+    assert len(found.unusable) == bool(held)
+    assert all(words in unusable.reason for unusable in found.unusable for words in held)
 
 
 def test_a_vertical_by_its_header_under_a_horizontal_name_is_held_back(tmp_path):

@@ -340,17 +340,17 @@ def line_about_spectra(header: Sequence[str]) -> str:
     return next((line for line in header if _SPECTRA.search(line)), "")
 
 
-def stated_direction(header: Sequence[str]) -> str:
-    """Return the direction in a line such as ``Component: N 12 E``, ``Channel = HNZ`` or ``Azimuth: 12``; "" without one.
+def stated_directions(header: Sequence[str]) -> list[str]:
+    """Return the directions in lines such as ``Component: N 12 E``, ``Channel = HNZ`` and ``Azimuth: 12``.
 
-    Numbers of components and channels are none.
+    A vertical one is first, then an azimuth. Numbers of components and channels are none.
     """
-    for match in filter(None, map(KEYED.match, header)):
-        key = folded(match["key"]).strip()
-        label = f"{match['label']} deg" if key == "AZIMUTH" else match["label"]
-        if key in DIRECTION_KEYS and orientation_in(label).known:
-            return label
-    return ""
+    keyed = [(folded(match["key"]).strip(), match["label"]) for match in map(KEYED.match, header) if match]
+    labels = [f"{label} deg" if key == "AZIMUTH" else label for key, label in keyed if key in DIRECTION_KEYS]
+    return sorted(
+        (label for label in labels if orientation_in(label).known),
+        key=lambda label: (not orientation_in(label).vertical, not label.endswith(" deg")),
+    )
 
 
 def stated_place(header: Sequence[str]) -> str | None:

@@ -12,6 +12,7 @@ from itertools import combinations
 import numpy as np
 
 from rockbatch.common.errors import Contradiction, InputError, NoRecord, NoStep, NoUnit, Unstated
+from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.clock_times import in_seconds
 from rockbatch.motions.formats.column_header import (
@@ -26,7 +27,7 @@ from rockbatch.motions.formats.column_header import (
     seconds_in,
     spectrum_in,
     stated_count,
-    stated_direction,
+    stated_directions,
     stated_factor,
     stated_of_samples,
     stated_place,
@@ -41,7 +42,7 @@ from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.spelled_out import is_down, line_about_sign
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
-from rockbatch.motions.labels.evidence import Kind
+from rockbatch.motions.labels.evidence import Kind, Statement, angles_statement
 from rockbatch.motions.labels.orientation import Orientation, is_upward, orientation_in, same_azimuth, split_stem
 from rockbatch.motions.limits import SAME_STEP, is_step
 from rockbatch.motions.motion import Samples
@@ -149,7 +150,9 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
     dt, values, moved = _on_one_step(columns, table, header, options)
     recordings, sensor = [], Sensor(place=stated_place(header))
     alone = len(used) == 1
-    key = stated_record(header, len(columns)) if alone and split_stem(stem)[1] is None else ""  # else its name tells the record
+    unnamed = alone and split_stem(stem)[1] is None  # else its name tells the record
+    key = stated_record(header, len(columns)) if unnamed else ""
+    others = _other_statements(header) if alone and not columns[used[0]].stated else ()
     for i in used:
         label, orientation = columns[i].label, orientation_in(columns[i].label)
         if orientation.vertical and is_down(header) and not is_upward(label):
@@ -166,6 +169,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
             sensor=sensor,
             stated=stated_of_samples(header) if alone else (),
             notes=(*notes, *omitted, *moved, *_remarks_on_sign(orientation, header, stem)),
+            statements=others,
         )
         recordings.append(recording)
     return recordings
@@ -191,6 +195,16 @@ def _units(
     return units
 
 
+def _other_statements(header: Sequence[str]) -> tuple[Statement, ...]:
+    """Return the header's statements of the direction of an only column, azimuths as angles, which are believed first."""
+    statements = []
+    for label in stated_directions(header):
+        words, orientation = f"its header says {shown(label)}", orientation_in(label)
+        angles = angles_statement(label, words, orientation.azimuth, None) if label.endswith(" deg") else None
+        statements.append(angles or Statement(Kind.HEADER, words, orientation))
+    return tuple(statements)
+
+
 def _remarks_on_sign(orientation: Orientation, header: Sequence[str], stem: str) -> tuple[str, ...]:
     """Return a remark on a line that speaks of a sign, if a component that may be vertical is not taken as positive down."""
     way = orientation if orientation.known else split_stem(stem)[1]
@@ -211,10 +225,10 @@ def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence
         return columns
     named = split_stem(stem)[1]
     down = is_down(header) and (named is None or named.vertical)
-    direction = stated_direction(header) or ("vertical down" if down else "")
-    if not direction:
+    directions = [*stated_directions(header), *(["vertical down"] if down else [])]
+    if not directions:
         return columns
-    return [replace(column, label=direction) if i in used else column for i, column in enumerate(columns)]
+    return [replace(column, label=directions[0]) if i in used else column for i, column in enumerate(columns)]
 
 
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:

@@ -9,7 +9,7 @@ from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, Sensor
 from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.intensity.measures import initial_of
-from rockbatch.motions.labels.evidence import Kind, Statement
+from rockbatch.motions.labels.evidence import Kind, Statement, decided_orientation
 from rockbatch.motions.labels.orientation import Orientation, is_clock, orientation_of, unknown
 from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.motion import Finding, Initial, Samples
@@ -32,6 +32,7 @@ class Recording:
     station: str = ""  # key shared by the channels of one station, but not by other versions of the same record
     orientation: Orientation | None = None  # if it differs from that of the label
     stated_by: Kind = Kind.HEADER  # source of the label
+    statements: tuple[Statement, ...] = ()  # of its direction by lines of the header; may include that by the label
     codes: tuple[str, str, str, str] | None = None  # network, station, location, channel for ObsPy; else of the sensor
     start: float | None = None  # time of the first sample [s since 1970, UTC]
     processed: bool | None = None  # whether the agency has corrected it; None if the file does not say
@@ -87,6 +88,9 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
     except ValueError as error:
         raise InputError(f'component "{recording.label}": {error}') from None
     words = "it is stated to be" if recording.stated_by is Kind.USER else "its header says"
+    own = Statement(recording.stated_by, f"{words} {shown(recording.label)}", orientation)
+    others = [s for s in recording.statements if s.words != own.words or s.kind is Kind.ANGLES]
+    statements = ((own,) if orientation.known and own.words not in {s.words for s in others} else ()) + tuple(others)
     acceleration = recording.values * factor
     series = [
         None if samples is None or (metres := length_factor(samples[1])) is None else samples[0] * metres
@@ -97,10 +101,8 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         name=name,
         dt=recording.dt,
         acceleration=acceleration,
-        orientation=orientation,
-        statements=(Statement(recording.stated_by, f"{words} {shown(recording.label)}", orientation),)
-        if orientation.known
-        else (),
+        orientation=decided_orientation(statements, orientation.label),
+        statements=statements,
         station=recording.station,
         sources=(source,),
         start=recording.start,
