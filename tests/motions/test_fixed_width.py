@@ -1,11 +1,13 @@
-"""Numbers in columns of one width: to the bit what ``float`` makes of each of them."""
+"""Numbers in columns of one width, which are read together: to the bit what ``float`` makes of each of them."""
+
+import random
 
 import numpy as np
 import pytest
 from motion_files import e15_7
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions.formats.fixed_width import _ends_within_a_column, fixed_numbers
+from rockbatch.motions.formats.fixed_width import _ends_within_a_column, aligned_numbers, fixed_numbers
 
 LAYOUTS = {
     "F8.3": (8, lambda x: f"{x:8.3f}"),
@@ -27,8 +29,38 @@ def test_numbers_of_one_layout_are_those_of_float_to_the_bit(layout):
     rng = np.random.default_rng(1)
     values = rng.standard_normal(2003) * 10.0 ** rng.integers(-9, 2, 2003)
     fields = [written(float(x)) for x in (*values, 0.0, -0.0, -1e-9)]
-    numbers, _ = fixed_numbers(in_lines(fields), 0, len(fields), width, 5)
+    numbers = aligned_numbers(in_lines(fields), width)
+    assert numbers is not None
     assert numbers.tobytes() == np.array(list(map(float, fields))).tobytes()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_damaged_field_is_read_as_float_reads_it_or_left_to_the_slow_reader(seed):
+    rng = random.Random(seed)
+    left = 0
+    for _ in range(100):
+        width, written = LAYOUTS[rng.choice(list(LAYOUTS))]
+        fields = [written(rng.uniform(-9.0, 9.0)) for _ in range(23)]
+        i, k = rng.randrange(23), rng.randrange(width)
+        fields[i] = fields[i][:k] + rng.choice("0123456789+-. _eEDx,\t²") + fields[i][k + 1 :]
+        numbers = aligned_numbers(in_lines(fields), width)
+        left += numbers is None
+        assert numbers is None or numbers.tobytes() == np.array(list(map(float, fields))).tobytes()
+    assert 20 < left < 90
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["  1.0  2.0", " 1.0  2.0", "  1.0"],
+        ["  1.0  2.0", "  1.0 2.0"],
+        ["1.0e30", "1.0e-9"],
+        ["1234567890.1234567"],
+        ["    ", "    "],
+    ],
+)
+def test_lines_of_other_lengths_and_numbers_of_more_digits_are_left_to_it(lines):
+    assert aligned_numbers(lines, 5 if len(lines[0]) == 10 else len(lines[0])) is None
 
 
 @pytest.mark.parametrize(("lines", "per_line", "cut"), [

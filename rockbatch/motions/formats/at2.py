@@ -14,6 +14,7 @@ from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.column_header import believed_unit, is_acceleration, is_of_another_quantity
 from rockbatch.motions.formats.fixed_width import (
     LOOKED_AT,
+    aligned_numbers,
     is_cut_short,
     number_in,
     without_end_marks,
@@ -183,7 +184,10 @@ def _component_of(fields: list[str]) -> int:
 
 
 def _values(text: str, start: int, npts: int) -> Samples:
-    """Return the ``npts`` finite numbers from the character ``start`` on, shape (npts,)."""
+    """Return the ``npts`` finite numbers from the character ``start`` on, shape (npts,).
+
+    Raises ``InputError`` for more or fewer, for a word that is no number, and if the last one is cut short.
+    """
     try:
         values, last = _between_blanks(text, start)
     except ValueError:
@@ -210,15 +214,20 @@ def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
         stop = blank.end() if blank else end
         if "_" in (piece := text[start:stop]):  # Python would read 1_0 as ten
             raise ValueError
-        tokens = piece.split()
-        values.append(np.array(list(map(float, tokens))))
+        lines = piece.splitlines()
+        aligned = aligned_numbers(lines, len(lines[0]) // max(len(lines[0].split()), 1))
+        tokens = (piece if aligned is None else piece[-_WIDEST * LOOKED_AT :]).split()
+        values.append(np.array(list(map(float, tokens))) if aligned is None else aligned)
         last = [*last, *tokens][-LOOKED_AT:]
         start = stop
     return np.concatenate(values), last
 
 
 def _touching_or_double(text: str, start: int, npts: int) -> tuple[Samples, list[str]]:
-    """Return numbers from ``start`` on in touching Fortran columns or with D exponents, and the last of them as written."""
+    """Return numbers from ``start`` on in touching Fortran columns or with D exponents, and the last of them as written.
+
+    Raises ``InputError`` with the line of a word that is no number.
+    """
     lines = [line.rstrip() for line in text[start:].rstrip("\x00\x1a").splitlines()]
     body = [line for line in lines if line]
     width = _width(body, npts)

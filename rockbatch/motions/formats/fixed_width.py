@@ -7,6 +7,7 @@ from itertools import islice
 from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.common.errors import InputError, Truncated
 from rockbatch.motions.limits import HUGE
@@ -23,6 +24,14 @@ _MOST_MARKS, _LONGEST_MARK = 10, 300  # lines, and characters of one
 _ALIGNED = 20  # lines whose numbers are hardly right-aligned by chance
 _WORD = re.compile(r"\S+")
 _MANY = 100  # numbers that hardly have the same number of decimals by chance
+_PRINTED = re.compile(r" *[-+]?\d*(?P<fraction>\.\d+)?(?P<power>[Ee][-+]\d\d?)?")
+_OTHER, _BLANK, _PLUS, _MINUS, _DIGIT, _POINT, _POWER = 0x00, 0x20, 0x40, 0x50, 0x60, 0x80, 0xA0
+_KINDS = {" ": _BLANK, "+": _PLUS, "-": _MINUS, ".": _POINT, "E": _POWER, "e": _POWER}
+_KINDS |= {str(digit): _DIGIT + digit for digit in range(10)}
+_CODES = bytes(_KINDS.get(chr(i), _OTHER) for i in range(256))
+"""Codes of characters: three bits for their kind, which rises along a number, one for the sign, four for a digit."""
+_DIGITS = 15  # decimal digits that a float holds exactly
+_POWERS = np.array([float(f"1e{power}") for power in range(23)])  # exact, too
 LOOKED_AT = 1000
 """Numbers at the end of a file that ``is_cut_short`` reads."""
 
@@ -93,13 +102,25 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
             )
         return [line[k : k + width] for k in range(0, len(line), width)]
 
-    return _numbers(lines[first : first + needed], first, count, per_line, fields), first + needed
+    return _numbers(lines[first : first + needed], first, count, per_line, width, fields), first + needed
 
 
 def _numbers(
-    lines: Sequence[str], first: int, count: int, per_line: int, fields: Callable[[str, int, int], list[str]]
+    lines: Sequence[str],
+    first: int,
+    count: int,
+    per_line: int,
+    width: int,
+    fields: Callable[[str, int, int], list[str]],
 ) -> Samples:
-    """Return the numbers of lines, the first of index ``first``; ``fields`` splits a line, given its index and count."""
+    """Return the numbers of lines, the first of index ``first``; ``fields`` splits a line, given its index and count.
+
+    Lines of aligned columns of ``width`` characters, full but for the last, are parsed without it.
+    """
+    full = bool(count) and len(lines[0]) == min(per_line, count) * width
+    aligned = aligned_numbers(lines, width) if full else None
+    if aligned is not None and len(aligned) == count and (np.abs(aligned) < HUGE).all():
+        return aligned
     values = np.empty(count)
     for i, line in enumerate(lines):
         place = i * per_line
@@ -112,6 +133,47 @@ def _numbers(
             numbers = [number_in(field, first + i) for field in row]
         values[place : place + per_line] = numbers
     return values
+
+
+def aligned_numbers(lines: Sequence[str], width: int) -> Samples | None:
+    """Return the numbers of lines in columns of one ``width``, all in the format of the first: F8.3, E15.7; else ``None``.
+
+    They equal those of ``float``: a decimal of up to 15 digits, times or over a power of ten up to 22, is rounded once
+    (Clinger, 1990). All columns are parsed at once, digit by digit.
+    """
+    full, text = len(lines[0]), "".join(lines)
+    printed = _PRINTED.fullmatch(text[:width]) if width else None
+    if printed is None or full % width or len(lines[-1]) % width or not text.isascii():
+        return None
+    power = printed.start("power") if printed["power"] else width
+    point = printed.start("fraction") if printed["fraction"] else power
+    if power > _DIGITS or not set(map(len, lines[:-1])) <= {full}:
+        return None
+    codes = np.frombuffer(text.encode().translate(_CODES), np.uint8).reshape(-1, width).T.copy()
+    digits = codes & 0x0F
+    if not _are_printed_alike(codes & np.uint8(0xE0), point):
+        return None
+    values, exponents = np.zeros(codes.shape[1]), np.zeros(codes.shape[1], dtype=int)
+    for row in (*digits[:point], *digits[point + 1 : power]):
+        values = 10.0 * values + row
+    for row in digits[power + 2 :]:
+        exponents = 10 * exponents + row
+    exponents[(codes[power + 1 : power + 2] == _MINUS).any(axis=0)] *= -1
+    exponents -= max(power - point - 1, 0)
+    if np.abs(exponents).max() >= len(_POWERS):
+        return None
+    powers = _POWERS[np.abs(exponents)]
+    values = np.where(exponents < 0, values / powers, values * powers)
+    return np.where((codes[:point] == _MINUS).any(axis=0), -values, values)
+
+
+def _are_printed_alike(kinds: npt.NDArray[np.uint8], point: int) -> bool:
+    """Return whether kinds of characters, shape (width, numbers), are blanks, a sign and digits before ``point``, then equal."""
+    whole, tail = kinds[:point], kinds[point:]
+    in_order = ((whole > _OTHER) & (whole <= _DIGIT)).all() and (whole[1:] >= whole[:-1]).all()
+    one_sign = ((whole == _PLUS).sum(axis=0) <= 1).all()  # a minus has the kind of a plus
+    ends_in_digit = len(tail) > 0 or (whole[-1] == _DIGIT).all()
+    return bool(in_order and one_sign and (tail == tail[:, :1]).all() and ends_in_digit)
 
 
 def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
@@ -140,7 +202,8 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
             raise InputError(f"line {index + 1}: found {len(row)} numbers; expected {expected}")
         return row
 
-    values = _numbers(lines[first:end], first, count, per_line, fields)
+    width = len(lines[first]) // min(per_line, count)
+    values = _numbers(lines[first:end], first, count, per_line, width, fields)
     backwards = (field for index in range(end - 1, first - 1, -1) for field in reversed(lines[index].split()))
     if is_cut_short(backwards) or _ends_within_a_column(lines[first:end], per_line):
         raise Truncated(
