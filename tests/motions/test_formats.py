@@ -355,7 +355,7 @@ def test_a_knet_file_shorter_than_its_header_says_is_refused_with_both_counts(tm
     assert "400 values from line 18 on take 50 lines, but there are 25" in reason
 
 
-SUFFIXES = sorted({suffix for known in FORMATS for suffix in known.suffixes.split()})
+SUFFIXES = sorted({suffix for known in FORMATS for suffix in known.suffixes})
 
 
 @pytest.mark.parametrize("content", [b"", b"\x00" * 3000, b"hello\nworld\n", struct.pack("<400I", *range(400))])

@@ -64,7 +64,7 @@ class Format:
     """
 
     name: str
-    suffixes: str  # with blanks between them
+    suffixes: tuple[str, ...]
     matches: Callable[[bytes], bool]
     read: Callable[[RecordFile], Sequence[Component | Unusable]]
     anywhere: bool = True
@@ -72,31 +72,38 @@ class Format:
 
 
 FORMATS = (
-    Format("PEER AT2", ".at2 .txt .csv .dat .bbp .acc", at2.looks_like_at2, at2.read_component),
-    Format("MiniSEED", ".mseed .ms .miniseed", miniseed.is_miniseed, miniseed.read_miniseed, counts=True),
-    Format("Kinemetrics EVT", ".evt", kinemetrics.is_evt, kinemetrics.read_evt),
-    Format("ASDF", ".h5 .asdf .hdf5", asdf.is_hdf5, asdf.read_asdf, counts=True),
-    Format("SAC", ".sac", sac.is_sac, sac.read_sac, anywhere=False, counts=True),
-    Format("K-NET/KiK-net", ".ew .ns .ud .ew1 .ns1 .ud1 .ew2 .ns2 .ud2", knet.is_knet, reader(knet.parse)),
-    Format("GeoNet V1A/V2A", ".v1a .v2a", geonet.is_geonet, reader(geonet.parse)),
-    Format("DYNA (ESM, ITACA, AFAD)", ".asc", dyna.is_dyna, reader(dyna.parse)),
-    Format("COSMOS", ".v0 .v1 .v2 .v3 .v0c .v1c .v2c .v3c", cosmos.is_cosmos, reader(cosmos.parse)),
-    Format("CSMIP", ".v1 .v2 .v3 .raw", volumes.is_csmip, reader(volumes.parse)),
-    Format("USGS SMC", ".smc", smc.is_smc, reader(smc.parse)),
-    Format("RENADIC", ".v1 .raw", volumes.is_renadic, reader(volumes.parse_pairs)),
-    Format("USC", "", volumes.is_usc, reader(volumes.parse)),
-    Format("BHRC Volume 1", "", bhrc.is_bhrc, reader(bhrc.parse)),
-    Format("CSMNC", "", csmnc.is_csmnc, reader(csmnc.parse)),
-    Format("AFAD text", "", afad.is_afad, reader(afad.parse)),
-    Format("UNAM", "", unam.is_unam, reader(unam.parse)),
-    Format("RESORCE", "", resorce.is_resorce, reader(resorce.parse)),
-    Format("CWA free field", ".txt .dat .acc .asc", cwa.is_cwa, reader(cwa.parse)),
-    Format("EMOD3D", ".000 .090 .ver", emod3d.is_emod3d, emod3d.read_emod3d),
-    Format("PEER AT2", ".at2", at2.has_at2_count, at2.read_component, anywhere=False),
-    Format("text columns", ".at2 .g3", columns.holds_table, columns.read_columns, anywhere=False),
+    Format("PEER AT2", (".at2", ".txt", ".csv", ".dat", ".bbp", ".acc"), at2.looks_like_at2, at2.read_component),
+    Format("MiniSEED", (".mseed", ".ms", ".miniseed"), miniseed.is_miniseed, miniseed.read_miniseed, counts=True),
+    Format("Kinemetrics EVT", (".evt",), kinemetrics.is_evt, kinemetrics.read_evt),
+    Format("ASDF", (".h5", ".asdf", ".hdf5"), asdf.is_hdf5, asdf.read_asdf, counts=True),
+    Format("SAC", (".sac",), sac.is_sac, sac.read_sac, anywhere=False, counts=True),
+    Format(
+        "K-NET/KiK-net",
+        (".ew", ".ns", ".ud", ".ew1", ".ns1", ".ud1", ".ew2", ".ns2", ".ud2"),
+        knet.is_knet,
+        reader(knet.parse),
+    ),
+    Format("GeoNet V1A/V2A", (".v1a", ".v2a"), geonet.is_geonet, reader(geonet.parse)),
+    Format("DYNA (ESM, ITACA, AFAD)", (".asc",), dyna.is_dyna, reader(dyna.parse)),
+    Format(
+        "COSMOS", (".v0", ".v1", ".v2", ".v3", ".v0c", ".v1c", ".v2c", ".v3c"), cosmos.is_cosmos, reader(cosmos.parse)
+    ),
+    Format("CSMIP", (".v1", ".v2", ".v3", ".raw"), volumes.is_csmip, reader(volumes.parse)),
+    Format("USGS SMC", (".smc",), smc.is_smc, reader(smc.parse)),
+    Format("RENADIC", (".v1", ".raw"), volumes.is_renadic, reader(volumes.parse_pairs)),
+    Format("USC", (), volumes.is_usc, reader(volumes.parse)),
+    Format("BHRC Volume 1", (), bhrc.is_bhrc, reader(bhrc.parse)),
+    Format("CSMNC", (), csmnc.is_csmnc, reader(csmnc.parse)),
+    Format("AFAD text", (), afad.is_afad, reader(afad.parse)),
+    Format("UNAM", (), unam.is_unam, reader(unam.parse)),
+    Format("RESORCE", (), resorce.is_resorce, reader(resorce.parse)),
+    Format("CWA free field", (".txt", ".dat", ".acc", ".asc"), cwa.is_cwa, reader(cwa.parse)),
+    Format("EMOD3D", (".000", ".090", ".ver"), emod3d.is_emod3d, emod3d.read_emod3d),
+    Format("PEER AT2", (".at2",), at2.has_at2_count, at2.read_component, anywhere=False),
+    Format("text columns", (".at2", ".g3"), columns.holds_table, columns.read_columns, anywhere=False),
     Format(
         "text columns",
-        ".txt .csv .dat .bbp .acc .sgs .tsv .inp .anc .cor .th",
+        (".txt", ".csv", ".dat", ".bbp", ".acc", ".sgs", ".tsv", ".inp", ".anc", ".cor", ".th"),
         columns.is_columns,
         columns.read_columns,
         anywhere=False,
@@ -107,18 +114,14 @@ FORMATS = (
 
 def is_usual(suffix: str) -> bool:
     """Return whether a suffix (with its dot, any case) is usual for some format."""
-    return any(suffix.lower() in form.suffixes.split() for form in FORMATS)
+    return any(suffix.lower() in form.suffixes for form in FORMATS)
 
 
 def format_of(suffix: str, head: bytes) -> Format | None:
     """Return the first of ``FORMATS`` for a suffix (with its dot, any case) and the first bytes of a file; ``None`` if none."""
     begin = begin_of(head)
     return next(
-        (
-            form
-            for form in FORMATS
-            if (form.anywhere or suffix.lower() in form.suffixes.split()) and form.matches(begin)
-        ),
+        (form for form in FORMATS if (form.anywhere or suffix.lower() in form.suffixes) and form.matches(begin)),
         None,
     )
 
@@ -189,7 +192,7 @@ def checked_reading(reading: Component | Unusable) -> Component | Unusable:
 def _not_recognised(file: RecordFile) -> str:
     """Return the message about a file of no known format, with a remedy."""
     suffix = file.path.suffix
-    names = " or ".join(dict.fromkeys(form.name for form in FORMATS if suffix.lower() in form.suffixes.split()))
+    names = " or ".join(dict.fromkeys(form.name for form in FORMATS if suffix.lower() in form.suffixes))
     foreign = next((words for magic, words in _FOREIGN.items() if file.data.startswith(magic)), "")
     if foreign:
         return f"not a format that rockbatch reads, but {foreign}; {_INSTEAD}"
