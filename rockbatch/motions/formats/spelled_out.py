@@ -21,7 +21,7 @@ _SIGNED = re.compile(  # behind a label, and perhaps its unit: Up-down (cm/s/s) 
     re.IGNORECASE,
 )
 _ALONG = re.compile(  # of SCEC's broadband platform: Column 2: H1 component ground acceleration (+ is 035)
-    rf"^(?P<column>column\s+\d{{1,3}}\s*[:=]\s*)[^()\[\]]*\bacc[^()\[\]]*?{_UNIT}\s*"
+    rf"^(?P<column>column\s+\d{{1,3}}\s*[:=]\s*)(?=[^()\[\]]*\bacc)[^()\[\]]*+{_UNIT}\s*"
     r"[(\[]\s*\+ is (?P<azimuth>\d{1,3})(?:\.0*)?\s*[)\]]$",
     re.IGNORECASE,
 )
