@@ -8,6 +8,12 @@ directions in two languages (O: oeste, Ost) is in none.
 import unicodedata
 from itertools import product
 
+
+def _row(meanings: str, *of_meanings: str) -> dict[str, str]:
+    """Return the words of each of several meanings."""
+    return dict(zip(meanings.split(), of_meanings, strict=True))
+
+
 WORDS: dict[str, dict[str, str]] = {
     "English": {
         "north": "N NORTH NORTHWARD NORTHERN",
@@ -23,80 +29,92 @@ WORDS: dict[str, dict[str, str]] = {
         "LONGITUDINAL TRAN TRANS TRANSV TRANSVERSE TRANSVERSAL RAD RADIAL TANG TANGENTIAL X Y AX AY FN FP R",
     },
     "Spanish": {
-        "north south east west": "NORTE SUR ESTE OESTE",
+        **_row("north south east west", "NORTE", "SUR", "ESTE", "OESTE"),
         "ew": "EO OE",
-        "above below": "ARRIBA ABAJO",
+        **_row("above below", "ARRIBA", "ABAJO"),
         "horizontal": "TRANSVERSAL",
         "filling": "COMPONENTE DIRECCION SENTIDO CANAL EJE ACELERACION ACELERACIONES",
     },
     "Portuguese": {
-        "north south east west": "NORTE SUL ESTE/LESTE OESTE",
+        **_row("north south east west", "NORTE", "SUL", "ESTE LESTE", "OESTE"),
         "ew": "LO OL",
-        "above below": "CIMA BAIXO",
+        **_row("above below", "CIMA", "BAIXO"),
         "filling": "DIRECAO CANAL EIXO ACELERACAO ACELERACOES",
     },
     "French": {
-        "north south east west": "NORD SUD EST OUEST",
+        **_row("north south east west", "NORD", "SUD", "EST", "OUEST"),
         "ew": "EO OE",
         "vertical": "VERTICALE",
-        "above below": "HAUT BAS",
+        **_row("above below", "HAUT", "BAS"),
         "horizontal": "HORIZONTALE LONGITUDINALE TRANSVERSALE RADIALE",
         "filling": "COMPOSANTE VOIE AXE SENS",
     },
     "Italian": {
-        "north south east west": "NORD SUD EST OVEST",
+        **_row("north south east west", "NORD", "SUD", "EST", "OVEST"),
         "ew": "EO OE",
         "vertical": "VERTICALE",
-        "above below": "ALTO/SU BASSO/GIU",
+        **_row("above below", "ALTO SU", "BASSO GIU"),
         "horizontal": "ORIZZONTALE LONGITUDINALE TRASVERSALE RADIALE",
         "filling": "COMPONENTE DIREZIONE CANALE ASSE ACCELERAZIONE ACCELERAZIONI",
     },
     "German": {
-        "north south east west": "NORD/NORDEN SUD/SUED/SUDEN/SUEDEN OST/OSTEN WEST/WESTEN",
+        **_row("north south east west", "NORD NORDEN", "SUD SUED SUDEN SUEDEN", "OST OSTEN", "WEST WESTEN"),
         "ew": "OW WO",
         "vertical": "VERTIKAL VERTIKALE SENKRECHT LOTRECHT",
-        "up down": "AUFWARTS/AUFWAERTS ABWARTS/ABWAERTS",
-        "above below": "AUF/OBEN AB/UNTEN",
+        **_row("up down", "AUFWARTS AUFWAERTS", "ABWARTS ABWAERTS"),
+        **_row("above below", "AUF OBEN", "AB UNTEN"),
         "horizontal": "WAAGRECHT WAAGERECHT LANGS LAENGS QUER",
         "filling": "KOMPONENTE RICHTUNG KANAL ACHSE BESCHLEUNIGUNG BESCHLEUNIGUNGEN",
     },
     "Turkish": {
-        "north south east west": "KUZEY GUNEY DOGU BATI",
-        "ns ew": "KG/GK DB/BD",
+        **_row("north south east west", "KUZEY", "GUNEY", "DOGU", "BATI"),
+        **_row("ns ew", "KG GK", "DB BD"),
         "vertical": "DUSEY DIKEY",
-        "above below": "YUKARI ASAGI",
+        **_row("above below", "YUKARI", "ASAGI"),
         "horizontal": "YATAY BOYUNA ENINE",
         "filling": "BILESEN BILESENI YON YONU KANAL EKSEN IVME IVMESI",
     },
     "Greek": {
-        "north south east west": "ΒΟΡΡΑΣ/ΒΟΡΑΣ/ΒΟΡΕΙΑ/VORRAS/VORAS ΝΟΤΟΣ/ΝΟΤΙΑ/NOTOS ΑΝΑΤΟΛΗ/ΑΝΑΤΟΛΙΚΗ/ANATOLI ΔΥΣΗ/ΔΥΤΙΚΗ/DYSI",
-        "ns ew": "ΒΝ ΑΔ",
+        **_row(
+            "north south east west",
+            "ΒΟΡΡΑΣ ΒΟΡΑΣ ΒΟΡΕΙΑ VORRAS VORAS",
+            "ΝΟΤΟΣ ΝΟΤΙΑ NOTOS",
+            "ΑΝΑΤΟΛΗ ΑΝΑΤΟΛΙΚΗ ANATOLI",
+            "ΔΥΣΗ ΔΥΤΙΚΗ DYSI",
+        ),
+        **_row("ns ew", "ΒΝ", "ΑΔ"),
         "vertical": "ΚΑΤΑΚΟΡΥΦΗ ΚΑΤΑΚΟΡΥΦΟΣ ΚΑΤΑΚΟΡΥΦΟ ΚΑΘΕΤΗ ΚΑΘΕΤΟΣ KATAKORYFI KATAKORYFOS KATHETI",
-        "above below": "ΠΑΝΩ/ΑΝΩ ΚΑΤΩ",
+        **_row("above below", "ΠΑΝΩ ΑΝΩ", "ΚΑΤΩ"),
         "horizontal": "ΟΡΙΖΟΝΤΙΑ ORIZONTIA ΔΙΑΜΗΚΗΣ ΕΓΚΑΡΣΙΑ",
         "filling": "ΣΥΝΙΣΤΩΣΑ ΔΙΕΥΘΥΝΣΗ ΕΠΙΤΑΧΥΝΣΗ",
     },
     "Russian": {
-        "north south east west": "СЕВЕР/СЕВЕРНАЯ/SEVER ЮГ/ЮЖНАЯ/YUG ВОСТОК/ВОСТОЧНАЯ/VOSTOK ЗАПАД/ЗАПАДНАЯ/ZAPAD",
-        "ns ew": "СЮ/ЮС ВЗ/ЗВ",
+        **_row(
+            "north south east west",
+            "СЕВЕР СЕВЕРНАЯ SEVER",
+            "ЮГ ЮЖНАЯ YUG",
+            "ВОСТОК ВОСТОЧНАЯ VOSTOK",
+            "ЗАПАД ЗАПАДНАЯ ZAPAD",
+        ),
+        **_row("ns ew", "СЮ ЮС", "ВЗ ЗВ"),
         "vertical": "ВЕРТИКАЛЬ ВЕРТИКАЛЬНАЯ ВЕРТИКАЛЬНЫЙ VERTIKAL VERTIKALNAYA VERTIKALNAIA",
-        "up down": "ВВЕРХ/ВЕРХ ВНИЗ/НИЗ",
+        **_row("up down", "ВВЕРХ ВЕРХ", "ВНИЗ НИЗ"),
         "horizontal": "ГОРИЗОНТАЛЬНАЯ GORIZONTALNAYA ПРОДОЛЬНАЯ ПОПЕРЕЧНАЯ",
         "filling": "КОМПОНЕНТА КАНАЛ НАПРАВЛЕНИЕ УСКОРЕНИЕ",
     },
     "Japanese": {
-        "north south east west": "北/KITA 南/MINAMI 東/HIGASHI 西/NISHI",
-        "ns ew": "NANBOKU/NAMBOKU TOZAI/TOUZAI",
+        **_row("north south east west", "北 KITA", "南 MINAMI", "東 HIGASHI", "西 NISHI"),
+        **_row("ns ew", "NANBOKU NAMBOKU", "TOZAI TOUZAI"),
         "vertical": "鉛直 JOGE JOUGE ENCHOKU",
-        "above below": "上 下",
+        **_row("above below", "上", "下"),
         "horizontal": "水平",
         "filling": "成分 方向 動 加速度",
     },
     "Chinese": {
-        "north south east west": "北 南 东/東 西",
-        "ns ew": "NANBEI/BEINAN DONGXI/XIDONG",
+        **_row("north south east west", "北", "南", "东 東", "西"),
+        **_row("ns ew", "NANBEI BEINAN", "DONGXI XIDONG"),
         "vertical": "垂直 垂 竖 竖直 豎 豎直 铅直 鉛直 铅垂 鉛垂 CHUIZHI SHUXIANG SHUZHI",
-        "above below": "上 下",
+        **_row("above below", "上", "下"),
         "horizontal": "水平 SHUIPING",
         "filling": "分量 方向 向 加速度",
     },
@@ -106,47 +124,44 @@ WORDS: dict[str, dict[str, str]] = {
         "east": "شرق شرقی شرقي SHARGH SHARGHI SHARQ",
         "west": "غرب غربی غربي GHARB GHARBI",
         "vertical": "قائم عمودی عمودي GHAEM AMUDI AMOODI",
-        "above below": "بالا پایین",
+        **_row("above below", "بالا", "پایین"),
         "horizontal": "افقی افقي طولی عرضی OFOGHI",
         "filling": "مولفه مؤلفه جهت شتاب",
     },
     "Arabic": {
-        "north south east west": "شمال جنوب/JANUB شرق غرب",
+        **_row("north south east west", "شمال", "جنوب JANUB", "شرق", "غرب"),
         "vertical": "راسي رأسي رأسية RASI",
         "horizontal": "أفقي افقي",
         "filling": "مركبة اتجاه",
     },
     "Dutch": {
-        "north south east west": "NOORD ZUID OOST WEST",
+        **_row("north south east west", "NOORD", "ZUID", "OOST", "WEST"),
         "ew": "OW WO",
         "vertical": "VERTICAAL VERTIKAAL",
         "horizontal": "HORIZONTAAL",
         "filling": "RICHTING KANAAL VERSNELLING",
     },
     "Romanian": {
-        "north south east west": "NORD SUD EST VEST",
+        **_row("north south east west", "NORD", "SUD", "EST", "VEST"),
         "horizontal": "ORIZONTAL ORIZONTALA",
         "vertical": "VERTICALA",
         "filling": "COMPONENTA DIRECTIE ACCELERATIE",
     },
     "Indonesian": {
-        "north south east west": "UTARA SELATAN TIMUR BARAT",
+        **_row("north south east west", "UTARA", "SELATAN", "TIMUR", "BARAT"),
         "vertical": "VERTIKAL TEGAK",
         "horizontal": "MENDATAR",
         "filling": "KOMPONEN ARAH PERCEPATAN",
     },
     "Korean": {
-        "north south east west": "북 남 동 서",
+        **_row("north south east west", "북", "남", "동", "서"),
         "vertical": "수직 연직",
-        "above below": "상 하",
+        **_row("above below", "상", "하"),
         "horizontal": "수평",
         "filling": "성분 방향 가속도",
     },
 }
-"""By language and meanings: a row of one has its words, a row of several a column for each, words of one column parted by /.
-
-"filling" has words beside a direction, such as component and acceleration.
-"""
+"""By language and meaning, words with blanks between them; "filling" has those beside a direction: component, acceleration."""
 
 
 def folded(text: str) -> str:
@@ -171,6 +186,4 @@ def pairs(first: str, second: str) -> set[str]:
 
 def _words_in(language: dict[str, str], meaning: str) -> list[str]:
     """Return a language's words for a meaning, folded; [] without any."""
-    row = next((meanings for meanings in language if meaning in meanings.split()), "")
-    texts = [language[row]] if row == meaning else language.get(row, "").split()
-    return folded(texts[row.split().index(meaning)].replace("/", " ")).split() if row else []
+    return folded(language.get(meaning, "")).split()
