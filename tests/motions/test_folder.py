@@ -70,7 +70,7 @@ def test_components_in_folders_called_after_their_directions_are_paired(tmp_path
     assert [*vertical_of(read_motions(tmp_path)).values()].count("2019/UP.D/x.UP.AT2") == upright
 
 
-def test_files_of_one_name_in_folders_called_after_their_directions_are_named_by_them(tmp_path):
+def test_files_of_one_name_in_folders_of_directions_are_named_by_their_folders(tmp_path):
     for seed, (folder, label) in enumerate(zip(("EW", "NS", "UD"), ("90", "0", "UP"), strict=True)):
         write_at2(tmp_path / "given" / folder, "STA1.AT2", wiggle(50, seed), title=title(label))
     found = read_motions(tmp_path / "given")
