@@ -1,13 +1,12 @@
 """Folders of records: every file becomes motions, or is listed with the reason why not."""
 
 import os
-import re
 import sys
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
@@ -27,23 +26,15 @@ from rockbatch.motions.identity.leaving_out import LeaveOut, Reading
 from rockbatch.motions.identity.pairing import to_motions
 from rockbatch.motions.labels.evidence import Kind, Statement, same_direction
 from rockbatch.motions.labels.orientation import (
-    Orientation,
-    accidental,
-    counted,
-    direction_of_suffix,
-    glued,
-    in_numbered_sets,
     is_clock,
-    numbered,
     orientation_of,
-    split_stem,
-    told_apart,
 )
 from rockbatch.motions.manifest import Manifest, apply_entries, is_manifest, options_of
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.quality.baseline import Offset, remove_offset
 from rockbatch.motions.sources import archives
 from rockbatch.motions.sources.companions import companions_by_quantity, statements_beside
+from rockbatch.motions.sources.file_names import FileName, names_of, site_of
 from rockbatch.motions.sources.files import MANIFESTS, SourceFile, files_of, inventories_beside
 from rockbatch.motions.sources.listed import NOT_LISTED
 from rockbatch.motions.sources.peer_search import Lists, listed_in, of_file
@@ -54,21 +45,11 @@ from rockbatch.motions.suites.sequences import ShockSequence, add_sequences
 from rockbatch.motions.texts import with_legible_texts
 from rockbatch.motions.unused import LeftOut, Unusable
 
-_RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 _MANY = 200  # files; fewer take no time worth a bar
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 ManifestSequences = Sequence[tuple[str, ShockSequence]]
 """Sequences, each after the path of its manifest."""
-
-
-class _Name(NamedTuple):
-    """Statements of the name of a file."""
-
-    site: str  # the station's part
-    direction: Orientation | None
-    site_of_several: str  # the station's part if the file holds several components, and is named after none of them
-    glued: tuple[str, Orientation] | None  # station's part and direction if the file states neither
 
 
 @dataclass(frozen=True)
@@ -79,7 +60,7 @@ class _ReadSettings:
     options: ReadOptions
     gravity: float
     offset: Offset
-    names: Mapping[Path, _Name]
+    names: Mapping[Path, FileName]
     inventories: Inventories
     beside: Mapping[Path, tuple[str, ...]]  # header lines that other files state
     lists: Lists
@@ -270,7 +251,14 @@ def read_files(
     statements |= companions_by_quantity(files)
     files = [replace(file, companion=statements[file.path]) if file.path in statements else file for file in files]
     settings = _ReadSettings(
-        manifest, options or ReadOptions(), gravity, offset or Offset(), _names(files), stated, beside, listed_in(files)
+        manifest,
+        options or ReadOptions(),
+        gravity,
+        offset or Offset(),
+        names_of(files),
+        stated,
+        beside,
+        listed_in(files),
     )
     records = (file for file in _with_progress(files) if file.path not in manifests)
     read = [(file, archives.state(file.path), _readings(file, settings)) for file in records]
@@ -293,7 +281,7 @@ def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int,
     if not has_records or archives.state(file.path) in (state, ()):
         return readings
     path = archives.bare(file.path)
-    return [Unusable(path.stem, (file.source,), CHANGED, station=_site(path, name))]
+    return [Unusable(path.stem, (file.source,), CHANGED, station=site_of(path, name))]
 
 
 def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
@@ -382,44 +370,13 @@ def _content(file: SourceFile, first: int | None = None) -> bytes:
         return b""
 
 
-def _names(files: Sequence[SourceFile]) -> dict[Path, _Name]:
-    """Return what each file's name says, its direction by the stem, else by the suffix (.EW), else None.
-
-    The names in one folder decide together whether digits are azimuths, and letters directions. Digits in the name of a file of
-    several components are its station's, unless a vertical one has the same site without them: TAF021 and TAF-UP.
-    """
-    names: dict[Path, _Name] = {}
-    for paths in grouped((file.path for file in files), lambda path: path.parent).values():
-        stems = {path: archives.bare(path).stem for path in paths}
-        by_chance = set.union(*(rule(stems.values()) for rule in (counted, numbered, accidental)))
-        apart, in_sets, ends_glued = (rule(stems.values()) for rule in (told_apart, in_numbered_sets, glued))
-        alone = {stem: (stem, None) if stem in by_chance else split_stem(stem) for stem in stems.values()}
-        ends = grouped(apart.items(), lambda item: item[1][0])
-        shared = {site for site, of_site in ends.items() if len({alone[stem][1] for stem, _ in of_site}) == 1}
-        of_folder: dict[str, tuple[str, Orientation | None]] = {}
-        for stem in stems.values():
-            parts = alone[stem]
-            # where all names of a site end in x, x is no direction
-            if stem in apart and (parts[1] is None or apart[stem][0] in shared):
-                parts = apart[stem]
-            of_folder[stem] = in_sets.get(stem, parts)
-        upright = {site for site, direction in of_folder.values() if direction and direction.vertical}
-        for path, stem in stems.items():
-            site, direction = of_folder[stem]
-            numbered_site = direction is not None and direction.label.isdigit() and site not in upright
-            direction = direction or direction_of_suffix(archives.bare(path).suffix)
-            end = None if direction else ends_glued.get(stem)
-            names[path] = _Name(site, direction, stem if numbered_site else site, end)
-    return names
-
-
 def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
     """Return the readings of one file: its components, usable or left out, or one unusable reading with the reason.
 
     No error goes further, so that a bad file never costs another; texts are made legible.
     """
     path = archives.bare(file.path)
-    site = _site(path, settings.names[file.path].site)
+    site = site_of(path, settings.names[file.path].site)
     lacks: tuple[str, ...] = ()
     companion = None
     kind: type[InputError] = UnusableRecord
@@ -483,13 +440,13 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
     return read_record(RecordFile(path, file.source, data, options, settings.gravity, settings.inventories, beside))
 
 
-def _with_place(component: Component, path: Path, name: _Name, alone: bool) -> Component:
+def _with_place(component: Component, path: Path, name: FileName, alone: bool) -> Component:
     """Return a component with its folder, its site by the file's ``name``, and that name's direction if ``alone`` in the file."""
     of_name, direction = name.site, name.direction
     if name.glued and not (component.statements or component.station):
         of_name, direction = name.glued
     component = add_name_statement(component, path.name, direction) if alone else component
-    site = _site(path, of_name if alone else name.site_of_several)
+    site = site_of(path, of_name if alone else name.site_of_several)
     return replace(component, site=site, folder=path.parent.absolute().as_posix())
 
 
@@ -502,12 +459,6 @@ def _with_list(component: Component, path: Path, settings: _ReadSettings) -> Com
     if listed is NOT_LISTED:
         return component
     return replace(component, listed=listed, magnitude=listed.magnitude, distance_km=listed.distance_km)
-
-
-def _site(path: Path, site: str) -> str:
-    """Return the site of a file: "RSN" and its number, else the name's station part ``site``, else its folder (UP.txt)."""
-    rsn = _RSN.match(path.stem)
-    return f"RSN{rsn[1]}" if rsn else site or path.parent.name
 
 
 def _without_offset(component: Component, settings: _ReadSettings) -> Component | Unusable:

@@ -16,8 +16,9 @@ from rockbatch.pier import FootingBase
 from rockbatch.pier.places import holds_a_tilt
 from rockbatch.simulation.chaos import MARGIN
 from rockbatch.simulation.elements import elements
+from rockbatch.simulation.open_ends import swing_after_peak
 from rockbatch.simulation.restraints import at_rest, reach_at_rest, stiffness_at_rest, stiffness_of_supports
-from rockbatch.simulation.runs import End, Run, Stop, Trial, swing_after_peak, try_all
+from rockbatch.simulation.runs import End, Run, Stop, Trial, try_all
 from rockbatch.simulation.steps import fastest_rate
 
 FURTHER, FURTHER_WITH_FRICTION = 5.0, 20.0

@@ -25,8 +25,6 @@ from rockbatch.pier import (
     ElasticBase,
     FootingBase,
     Pier,
-    YieldingBase,
-    block_period,
     neglected,
     places,
     tilt_over_residual,
@@ -38,6 +36,7 @@ from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.elements import elements, prestress
 from rockbatch.simulation.models import Line, acceleration_at, ground_of, line_of, model
+from rockbatch.simulation.open_ends import still_rocks
 from rockbatch.simulation.restraints import static_position
 from rockbatch.simulation.starting import start_of
 from rockbatch.simulation.steps import first_substeps, least_substeps, patience, readings
@@ -73,9 +72,6 @@ _REASONS = {
 
 LEFT_ALONE = (Failure.UNDECIDED, Failure.RATCHETS)
 """Failures of runs that the longest tail did not decide; smaller steps do not change them."""
-
-LONGEST = 30.0
-"""Longest period of free rocking after a peak, in 1/p, about that at 0.999 α: at α it is infinite."""
 
 NOTED_TILT = 1e-4
 """Change of the residual rotation by dampers and tendons, in units of α, above which a note reports it."""
@@ -415,7 +411,7 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         reason=reason,
         failure=failure,
         beyond_linearised=beyond_linearised,
-        still_rocks=_still_rocks(pier, base, result) if status == "ok" else None,
+        still_rocks=still_rocks(pier, base, result) if status == "ok" else None,
         theta_max=min(result.theta_max, ON_ITS_SIDE),
         theta_max_in_motion=min(in_motion, ON_ITS_SIDE),
         separations=result.uplifts,
@@ -425,28 +421,6 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         **{name: getattr(result, name) for name in _UNCHANGED},
         **more,
     )
-
-
-def _still_rocks(pier: Pier, base: Base, result: Result) -> bool:
-    """Return True if a pier that stands may land harder, or load its devices more, after the end of its run than in it.
-
-    A rigid block on bare rigid ground has not landed since its peak. Else its run ended within a period of free rocking of such
-    a block from there: devices may be on the other side, a landing loads springs, and bends a shaft, after it, and with vertical
-    vibration the next one may be harder. False for a pier that rests, or never left ground other than a bed of strips, which
-    presses a pier that has not lifted off, too; and on yielding springs, where a run lasts until the pier stays down.
-    """
-    stays_down = result.uplifts + result.impacts == 0 and not isinstance(base, FootingBase)
-    rests = stays_down if base.on_springs or base.bends else result.theta_end == 0.0
-    if rests or isinstance(base, YieldingBase):
-        return False
-    if not (base.on_springs or base.restraints or base.bends):
-        return not result.t_impact > result.t_max
-    return result.t_end - result.t_max < swing_after_peak(pier, result.theta_max)
-
-
-def swing_after_peak(pier: Pier, theta_max: float) -> float:
-    """Return the period [s] of free rocking from a peak of ``theta_max`` [rad], :data:`LONGEST`/p at most."""
-    return min(block_period(pier, theta_max), LONGEST / pier.p)
 
 
 def cause_of_flight(

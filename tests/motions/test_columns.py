@@ -12,8 +12,9 @@ from motion_files import at2_text, wiggle
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.motions import ReadOptions, Unusable, read_motions
 from rockbatch.motions.formats import RecordFile, read_record, table
-from rockbatch.motions.formats.column_header import Column, stated_step
+from rockbatch.motions.formats.column_header import Column
 from rockbatch.motions.formats.columns import is_bbp
+from rockbatch.motions.formats.stated_step import stated_step
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 
 T = np.arange(60) * 0.005

@@ -1,4 +1,4 @@
-"""Headers of tables, as people and programs write them: columns, units, count, interval."""
+"""Headers of tables, as people and programs write them: columns, units, count."""
 
 import math
 import re
@@ -6,48 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from rockbatch.common.errors import InputError, NoRecord
+from rockbatch.common.errors import NoRecord
 from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.formats.spelled_out import DIRECTION_KEYS, KEYED, is_down
 from rockbatch.motions.formats.stated import Stated
+from rockbatch.motions.formats.stated_step import OF_OTHER_DATA, SECOND, SECONDS, STEP
 from rockbatch.motions.labels.direction_words import folded
 from rockbatch.motions.labels.orientation import orientation_in, orientation_of
-from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.quality.places import Stand, stand
 from rockbatch.motions.sources.record_file import ReadOptions
-
-_SECOND = "s sec secs second seconds sek sekunde sekunden seg segundo segundos seconde secondes secondo secondi sn saniye сек 秒"
-SECONDS = dict.fromkeys(_SECOND.split(), 1.0) | {"ms": 1e-3, "msec": 1e-3}
-"""Units of time [s]."""
-
-
-_SLOWEST = 1.0  # Hz: a lower "rate" is probably an interval
-_RATE_UNITS = ("hz", "sps", "samples/sec", "samples/s", "pts/sec", "points/sec", "1/s")
-_SAMPLE = r"sampl(?:e|es|ing)[ _-]?"
-_INTERVAL = (
-    rf"dt|delta ?t|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)|"
-    "intervalo? de (?:muestreo|tiempo|amostragem)|paso de tiempo|pas de timp|pas d['e] ?(?:temps|[eé]chantillonnage)|"
-    "passo di campionamento|intervallo di campionamento|abtastintervall|zeitschritt|örnekleme aral[iı]ğ[iı]|"
-    "采样间隔|サンプリング(?:間隔|周期)"
-)
-_RATE = (
-    rf"{_SAMPLE}(?:rate|freq(?:uency)?)|samples[ _-]per[ _-]sec(?:ond)?|sps|(?:frecuencia|tasa) de muestreo|"
-    "muestreo(?=[^A-Za-z]*Hz[^A-Za-z]*$)|"
-    "taxa de amostragem|fr[eé]quence d'[eé]chantillonnage|frequenza di campionamento|abtastrate|örnekleme frekans[iı]|"
-    "采样(?:率|频率)|サンプリング(?:周波数|レート)"
-)
-_SPACED = r"(?:equally[ _-])?spaced at|(?:equal|time|sec) intervals? of|at intervals? of"
-_STEP_UNITS = "|".join(re.escape(unit) for unit in sorted((*SECONDS, *_RATE_UNITS), key=len, reverse=True))
-_STEP = re.compile(
-    rf"(?<![A-Za-z])(?:(?P<interval>{_INTERVAL}|{_SPACED})|(?P<rate>{_RATE}))(?![A-Za-z])"
-    rf"(?:[ _]?(?:[(\[]\s*(?P<before>{_STEP_UNITS})\.?\s*[)\]]|(?P<suffix>s|sec|ms|hz)(?=\s*[:=])))?"
-    r"\s*+[:=;]?\s*+(?P<number>[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[ed][-+]?\d+)?)"
-    rf"(?:\s*[(\[]?\s*(?P<behind>{_STEP_UNITS})(?![A-Za-z]))?",
-    re.IGNORECASE,
-)
-_OF_OTHER_DATA = re.compile(
-    r"\b(?:original(?:ly)?|raw|recorder|instrument(?![^:=]* correct)|resampled|from|was|were)\b[^:=]*$", re.IGNORECASE
-)
 
 # possessive (*+), so that matching any header line takes the square of its length at most
 _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
@@ -116,7 +83,7 @@ _OF_NO_SAMPLES = re.compile(
 _BEYOND_ROUNDING = {"peak": (0.05, math.inf), "duration": (0.01, math.inf)}  # of another stage of processing, perhaps
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
-_SECONDS = [prefix + word for word in _SECOND.split() if len(word) > 2 for prefix in ("", "in", "en")]
+_SECONDS = [prefix + word for word in SECOND if len(word) > 2 for prefix in ("", "in", "en")]
 _TIMES = _TIME | {time + seconds for time in ("", "t", *_TIME) for seconds in _SECONDS}
 _TIMES |= {"timestamp", "datetime", "date", "utc", "timeutc", "utctime", "datetimeutc"}
 _INDEX = re.compile(
@@ -298,7 +265,7 @@ def _columns_without_units(header: Sequence[str], width: int) -> list[Column] | 
         if len(labels) == width and all(orientation_in(column.label).known for column in labels):
             return labels
     for line in reversed(header):
-        if _VALUE.search(line) or _STEP.search(line) or is_down([line]):
+        if _VALUE.search(line) or STEP.search(line) or is_down([line]):
             continue
         for columns in _labels_of(line.replace('"', "").strip(" ,;")):
             if len(columns) == width and (
@@ -378,7 +345,7 @@ def stated_record(header: Sequence[str], width: int) -> str:
     if not any(map(_STATION.match, header)):
         return ""
     shared = (line for line in header if not _is_of_component(line, width))
-    return "; ".join(" ".join(_STEP.sub("", _COUNT.sub("", line)).upper().split()) for line in shared)
+    return "; ".join(" ".join(STEP.sub("", _COUNT.sub("", line)).upper().split()) for line in shared)
 
 
 def _is_of_component(line: str, width: int) -> bool:
@@ -419,7 +386,7 @@ def _names_one_unit(line: str) -> bool:
 def _is_of_samples(before: str) -> bool:
     """Return whether the words ``before`` a unit, from a semicolon on, may be of the samples: not "originally", "trigger …"."""
     clause = before.rpartition(";")[2]
-    return not (_OF_NO_SAMPLES.search(clause) or _OF_OTHER_DATA.search(clause))
+    return not (_OF_NO_SAMPLES.search(clause) or OF_OTHER_DATA.search(clause))
 
 
 def is_of_another_quantity(unit: str) -> bool:
@@ -482,47 +449,3 @@ def _short_label(label: str) -> str:
     if len(parts := re.split(r"\s*-\s*", bare)) == 2 and all(len(p) > 1 and orientation_of(p) for p in parts):
         return "-".join(parts)  # Norte-Sur
     return re.sub(r"[-\s]+", "", bare) if orientation_of(bare) else bare or label
-
-
-@dataclass(frozen=True)
-class StatedStep:
-    """A sampling interval [s], and the words that state it."""
-
-    dt: float
-    words: str
-
-
-def stated_step(header: Sequence[str]) -> StatedStep | None:
-    """Return the interval in a line such as ``dt = 0.01 s``, ``Sampling rate: 200 Hz`` or ``NPTS= 4000, DT= .0050 SEC``.
-
-    ``None`` without one. Intervals of other data ("original dt = 0.005") do not count. Raises ``InputError`` for two that
-    differ by over 1 %, and for numbers that are no intervals.
-    """
-    matches = (match for line in header for match in _STEP.finditer(line))
-    steps = [_step(match) for match in matches if not _OF_OTHER_DATA.search(match.string[: match.start()])]
-    for step in steps[1:]:
-        if abs(step.dt - steps[0].dt) > SAME_STEP * steps[0].dt:
-            raise InputError(
-                f'the header says "{steps[0].words}" and "{step.words}", {steps[0].dt:g} s and {step.dt:g} s; '
-                "correct the one that is wrong"
-            )
-    return steps[0] if steps else None
-
-
-def _step(match: re.Match[str]) -> StatedStep:
-    """Return the interval that a match states, in s without a unit, or by a rate; raise ``InputError`` for impossible numbers."""
-    words = match[0].strip()
-    unit = (match["behind"] or match["before"] or match["suffix"] or "").lower()
-    try:
-        number = float(match["number"].lower().replace(",", ".").replace("d", "e"))
-    except ValueError:
-        number = 0.0
-    is_rate = unit in _RATE_UNITS or (match["rate"] is not None and unit not in SECONDS)
-    if is_rate and not unit and number < _SLOWEST:
-        raise InputError(
-            f'header: found "{words}", which is no rate; expected e.g. dt = 0.01 s, or sampling rate: 100 Hz'
-        )
-    dt = (1.0 / number if number else 0.0) if is_rate else number * SECONDS.get(unit, 1.0)
-    if not 0 < dt < HUGE:
-        raise InputError(f'header: found "{words}"; expected e.g. dt = 0.01 s')
-    return StatedStep(float(f"{dt:.12g}"), words)

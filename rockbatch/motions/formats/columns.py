@@ -32,7 +32,6 @@ from rockbatch.motions.formats.column_header import (
     stated_of_samples,
     stated_place,
     stated_record,
-    stated_step,
     stated_unit,
     with_quantities,
     without_index_name,
@@ -40,6 +39,7 @@ from rockbatch.motions.formats.column_header import (
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.spelled_out import is_down, line_about_sign
+from rockbatch.motions.formats.stated_step import stated_step
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.labels.evidence import Kind, Statement, angles_statement
