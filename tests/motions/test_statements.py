@@ -7,7 +7,7 @@ from motion_files import wiggle, write_at2
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
-from rockbatch.motions.formats.column_header import stated_step
+from rockbatch.motions.formats.stated_step import stated_step
 
 A, B, C = (wiggle(120, seed) for seed in (1, 2, 3))
 

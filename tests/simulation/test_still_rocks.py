@@ -48,6 +48,15 @@ def test_a_pier_on_springs_still_rocks_for_a_period_after_its_peak():
         assert row(ELASTIC, 0.38, quiet_s)["still_rocks"] == expected
 
 
+def test_devices_may_bear_more_within_a_period_after_the_peak_of_a_pier_that_has_landed():
+    base = rb.RigidBase(restraints=(rb.Damper("viscous", nu=0.1),))
+    long = row(base, 0.38, 20.0)
+    period = 4.0 / PIER.p * math.acosh(1.0 / (1.0 - long["theta_max_over_alpha"]))
+    for share, expected in ((0.9, 1), (1.1, 0)):
+        short = row(base, 0.38, long["t_max_s"] + share * period - 1.5)
+        assert (short["impacts"] > 0, short["still_rocks"]) == (True, expected)
+
+
 @pytest.mark.parametrize(
     ("base", "amplitude"),
     [
