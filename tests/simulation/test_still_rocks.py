@@ -48,7 +48,7 @@ def test_a_pier_on_springs_still_rocks_for_a_period_after_its_peak():
         assert row(ELASTIC, 0.38, quiet_s)["still_rocks"] == expected
 
 
-def test_devices_may_bear_more_within_a_period_after_the_peak_of_a_pier_that_has_landed():
+def test_devices_may_bear_more_within_a_period_of_the_peak_of_a_pier_that_landed():
     base = rb.RigidBase(restraints=(rb.Damper("viscous", nu=0.1),))
     long = row(base, 0.38, 20.0)
     period = 4.0 / PIER.p * math.acosh(1.0 / (1.0 - long["theta_max_over_alpha"]))
