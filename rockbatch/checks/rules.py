@@ -157,7 +157,7 @@ class Rule:
 
     @property
     def threshold(self) -> float:
-        """What the demand of one record must not exceed; of a check that counts records ``above``, 0 unless given."""
+        """Limit on the demand of one record; of a check that counts records, the value ``above`` which they count, or 0."""
         return (self.above or 0.0) if self.statistic == "count" else self.limit
 
     @property

@@ -55,10 +55,9 @@ def main(arguments: argparse.Namespace) -> int:
         say(str(write_report(arguments.directory, saved=saved)))
     study = saved.info["study"]
     edited = [file["path"] for file in (study, *study.get("checks", ())) if not _is_as_run(file)]
-    started_here = arguments.directory.resolve().is_relative_to(
-        Path.cwd()
-    )  # as far as can be told, to read relative paths
-    if edited and arguments.rules is None and started_here:
+    # A run mostly starts at or above its results: elsewhere a relative path may lead to another file.
+    is_below = arguments.directory.resolve().is_relative_to(Path.cwd())
+    if edited and arguments.rules is None and is_below:
         again = shlex.join(["rockbatch", "run", study["path"], "--out", str(arguments.directory)])
         say(f"{', '.join(edited)}: edited since the run, whose limits these are; {again} applies the new ones")
     return code

@@ -60,7 +60,7 @@ IMPACT_UNITS = {"t": "s", "landing_velocity": "m/s", "impulse_horizontal": "m/s"
 """Columns of the table of impacts except the pivot, with their units."""
 
 DEVICE_UNITS = {"elongation": "m", "force": "N/kg"}
-"""What the table of restraints has of each device, as "damper 1 force", with the units."""
+"""Columns of the table of restraints for each device, such as "damper 1 force", with their units."""
 
 EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64", "after": "int64"}
 """Columns of the table of events, with their types."""

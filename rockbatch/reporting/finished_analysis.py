@@ -124,12 +124,12 @@ def of_analysis(
                 if analysis is None:
                     return Markup("")
                 files = {f"{table}.csv": columns for table, columns in tables.items()}
-                found = {file: analysis.table(file, columns) for file, columns in files.items()}
-                if lacking := [file for file, table in found.items() if table is None]:
+                by_file = {file: analysis.table(file, columns) for file, columns in files.items()}
+                if lacking := [file for file, table in by_file.items() if table is None]:
                     listed = [file for file in lacking if file in analysis.info.get("files", ())]
                     return _again(name, f"{', '.join(listed)}: edited or damaged") if listed else Markup("")
                 with np.errstate(divide="raise", over="raise", invalid="raise"):
-                    return drawn(analysis, *found.values())
+                    return drawn(analysis, *by_file.values())
             except InputError:
                 raise
             except _DAMAGE as error:

@@ -135,12 +135,12 @@ def _differing(names: Iterable[str], values: Sequence[tuple[str, Mapping[str, ob
 
     Bases none of which has a name are not compared by it: a footing has no spring.
     """
-    found = []
+    differing = []
     for name in names:
         having = {base for base, of_foundation in values if name in of_foundation}
         if len({str(of_foundation.get(name)) for base, of_foundation in values if base in having}) > 1:
-            found.append(name)
-    return found
+            differing.append(name)
+    return differing
 
 
 def _constants(cases: Sequence[Case], given: Collection[str]) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""Files beside a record, told by their names: its step and count, as FEMA P-695's programs write them, and its velocities.
+"""Files beside a record, by their names: its step and count, as FEMA P-695's programs write them, and its velocities.
 
 ``SortedEQFile_(120111).txt`` has the samples, ``DtFile_(120111).txt`` the step [s], ``NumPointsFile_(120111).txt`` the count.
 STA_vel.txt has the velocities of STA_acc.txt.
@@ -62,15 +62,15 @@ def companions_by_quantity(files: Sequence[SourceFile]) -> dict[Path, str]:
 
     Single letters count only if there are all three: V alone is vertical.
     """
-    found = []
+    entries = []
     for file in files:
         bare = archives.bare(file.path)
         for match in _WORD.finditer(bare.stem):
             what, is_letter = _QUANTITIES[match[0].lower()]
             around = (bare.stem[: match.start()], bare.stem[match.end() :], bare.suffix.lower(), is_letter)
-            found.append(((file.path.parent, *around), what, file.path))
+            entries.append(((file.path.parent, *around), what, file.path))
     companions: dict[Path, str] = {}
-    for (*_, is_letter), of_name in grouped(found, lambda entry: entry[0]).items():
+    for (*_, is_letter), of_name in grouped(entries, lambda entry: entry[0]).items():
         kinds = {what for _, what, _ in of_name}
         if "acceleration" in kinds and (not is_letter or len(kinds) == len(_WORDS)):
             companions |= {path: f"the {what} of a record" for _, what, path in of_name if what != "acceleration"}

@@ -47,14 +47,14 @@ def spectral_column(period: float, rule: str = "") -> str:
 
 def measures_in(columns: Iterable[str]) -> dict[str, Measure]:
     """Return the measures among some columns: CAV, SA(0.5 s) of sa_0.5s_g, RotD100(0.5 s) of sa_0.5s_rotd100_g, by column."""
-    found = {}
+    measures = {}
     for column in columns:
         if spectral := _SPECTRAL.fullmatch(column):
             symbol = _OF_PAIRS.get(spectral["rule"], "SA")
-            found[column] = Measure(f"{symbol}({spectral['period']}\u00a0s)", "spectral acceleration [g]")
+            measures[column] = Measure(f"{symbol}({spectral['period']}\u00a0s)", "spectral acceleration [g]")
         elif column in MEASURES:
-            found[column] = MEASURES[column]
-    return found
+            measures[column] = MEASURES[column]
+    return measures
 
 
 def read(directory: Path) -> "pd.DataFrame":
